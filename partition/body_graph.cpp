@@ -1,0 +1,139 @@
+#include "partition/body_graph.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "partition/refuse.h"
+
+namespace cleave {
+namespace {
+
+// One direction of one link, before links of the same pair are merged.
+struct HalfLink {
+  int neighbour;
+  int rows;
+};
+
+void check_masses(std::span<const double> mass_kg) {
+  for (size_t i = 0; i < mass_kg.size(); ++i) {
+    if (std::isfinite(mass_kg[i]) && mass_kg[i] > 0) continue;
+    refuse("mass_kg of body " + std::to_string(i), mass_kg[i], "finite and > 0");
+  }
+}
+
+void check_links(int bodies, std::span<const ConstraintLink> links) {
+  const auto is_body = [&](int body) { return body >= -1 && body < bodies; };
+  const std::string body_range = "-1 (static geometry) to " + std::to_string(bodies - 1);
+  const int most_rows = std::numeric_limits<int>::max();
+  long total_rows = 0;
+  for (size_t k = 0; k < links.size(); ++k) {
+    const auto of_link = [&](const char* field) { return field + (" of link " + std::to_string(k)); };
+    if (!is_body(links[k].body_a)) refuse(of_link("body_a"), links[k].body_a, body_range);
+    if (!is_body(links[k].body_b)) refuse(of_link("body_b"), links[k].body_b, body_range);
+    if (links[k].rows < 1) refuse(of_link("rows"), links[k].rows, ">= 1");
+    total_rows += links[k].rows;
+    if (total_rows > most_rows)
+      refuse(of_link("sum of rows to the end"), total_rows, "<= " + std::to_string(most_rows));
+  }
+}
+
+bool joins_two_bodies(const ConstraintLink& link) {
+  return link.body_a >= 0 && link.body_b >= 0 && link.body_a != link.body_b;
+}
+
+// Start of every body's half-links, (n + 1).
+std::vector<int> row_starts(int bodies, std::span<const ConstraintLink> links) {
+  std::vector<int> start(bodies + 1, 0);
+  for (const ConstraintLink& link : links) {
+    if (!joins_two_bodies(link)) continue;
+    ++start[link.body_a + 1];
+    ++start[link.body_b + 1];
+  }
+  for (int i = 0; i < bodies; ++i) start[i + 1] += start[i];
+  return start;
+}
+
+}  // namespace
+
+BodyGraph::BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links)
+    : mass_kg_(mass_kg.begin(), mass_kg.end()) {
+  check_masses(mass_kg);
+  const int n = body_count();
+  check_links(n, links);
+  const std::vector<int> start = row_starts(n, links);
+
+  std::vector<HalfLink> by_body(start[n]);
+  std::vector<int> fill(start.begin(), start.end() - 1);
+  for (const ConstraintLink& link : links) {
+    if (!joins_two_bodies(link)) continue;
+    by_body[fill[link.body_a]++] = {link.body_b, link.rows};
+    by_body[fill[link.body_b]++] = {link.body_a, link.rows};
+  }
+  // The list is symmetric, so transposing it keeps its rows and sorts every row by neighbour: no comparison
+  // sort.
+  std::vector<HalfLink> sorted(start[n]);
+  fill.assign(start.begin(), start.end() - 1);
+  for (int i = 0; i < n; ++i) {
+    for (int k = start[i]; k < start[i + 1]; ++k) sorted[fill[by_body[k].neighbour]++] = {i, by_body[k].rows};
+  }
+
+  first_.assign(1, 0);
+  first_.reserve(n + 1);
+  for (int i = 0; i < n; ++i) {
+    for (int k = start[i]; k < start[i + 1]; ++k) {
+      if (k == start[i] || sorted[k].neighbour != sorted[k - 1].neighbour) {
+        neighbour_.push_back(sorted[k].neighbour);
+        constraints_.push_back(0);
+        rows_.push_back(0);
+      }
+      ++constraints_.back();
+      rows_.back() += sorted[k].rows;
+    }
+    first_.push_back(static_cast<int>(neighbour_.size()));
+  }
+}
+
+namespace {
+
+// Flood fill over the edges whose ends carry the same label; pieces are numbered by their lowest body.
+template <class SameLabel>
+int flood(const BodyGraph& graph, SameLabel same_label, std::vector<int>& piece_of_body) {
+  const int n = graph.body_count();
+  piece_of_body.assign(n, -1);
+  std::vector<int> stack;
+  stack.reserve(n);
+  int pieces = 0;
+  for (int root = 0; root < n; ++root) {
+    if (piece_of_body[root] >= 0) continue;
+    piece_of_body[root] = pieces;
+    stack.push_back(root);
+    while (!stack.empty()) {
+      const int body = stack.back();
+      stack.pop_back();
+      for (int other : graph.neighbours(body)) {
+        if (piece_of_body[other] >= 0 || !same_label(body, other)) continue;
+        piece_of_body[other] = pieces;
+        stack.push_back(other);
+      }
+    }
+    ++pieces;
+  }
+  return pieces;
+}
+
+}  // namespace
+
+int count_islands(const BodyGraph& graph, std::vector<int>* island_of_body) {
+  std::vector<int> own;
+  return flood(
+      graph, [](int, int) { return true; }, island_of_body ? *island_of_body : own);
+}
+
+int count_pieces(const BodyGraph& graph, std::span<const int> part_of_body) {
+  std::vector<int> piece_of_body;
+  return flood(
+      graph, [&](int a, int b) { return part_of_body[a] == part_of_body[b]; }, piece_of_body);
+}
+
+}  // namespace cleave

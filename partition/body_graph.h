@@ -1,0 +1,72 @@
+// The graph of one time step: nodes are dynamic bodies, edges join two bodies that share a constraint.
+//
+// Stored as compressed rows (both directions of an edge are stored): the neighbours of body i are
+// neighbour[first[i] .. first[i+1]), ascending. Every edge keeps three weights:
+//   pairs        always 1
+//   constraints  joints + contact points between the two bodies
+//   rows         scalar constraint rows between the two bodies
+// Static geometry is no node; constraints with it add to no degree, edge or gain.
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace cleave {
+
+// The unit in which an edge is weighed (--edge-weight).
+enum class EdgeWeight { pairs, constraints, rows };
+
+// One constraint (a joint or one contact point) between bodies a and b; -1 stands for static geometry.
+struct ConstraintLink {
+  int body_a = -1;
+  int body_b = -1;
+  int rows = 0;
+};
+
+class BodyGraph {
+ public:
+  BodyGraph() = default;
+
+  // Merges links of the same pair into one edge; links with static geometry or of a body with itself are no
+  // edge. mass_kg: (n). Throws std::invalid_argument naming the link when a body index is outside [-1, n) or
+  // rows < 1, naming the body when a mass is not finite and positive, and when all rows together exceed the
+  // range of int (so that no weight, degree, cut or gain can overflow).
+  BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links);
+
+  int body_count() const { return static_cast<int>(mass_kg_.size()); }
+  int edge_count() const { return static_cast<int>(neighbour_.size()) / 2; }
+  double mass_kg(int body) const { return mass_kg_[body]; }
+
+  // Degree = number of distinct adjacent bodies.
+  int degree(int body) const { return first_[body + 1] - first_[body]; }
+
+  // Half-edges of a body: positions in neighbour() and weight().
+  int first(int body) const { return first_[body]; }
+  int last(int body) const { return first_[body + 1]; }
+  int neighbour(int half_edge) const { return neighbour_[half_edge]; }
+  std::span<const int> neighbours(int body) const {
+    return std::span(neighbour_).subspan(first_[body], degree(body));
+  }
+  int weight(int half_edge, EdgeWeight unit) const {
+    return unit == EdgeWeight::pairs         ? 1
+           : unit == EdgeWeight::constraints ? constraints_[half_edge]
+                                             : rows_[half_edge];
+  }
+
+ private:
+  std::vector<double> mass_kg_;   // (n)
+  std::vector<int> first_{0};     // (n + 1)
+  std::vector<int> neighbour_;    // (2 edges)
+  std::vector<int> constraints_;  // (2 edges)
+  std::vector<int> rows_;         // (2 edges)
+};
+
+// Connected components: the islands of the step. Returns their number and, if asked, one island id per body,
+// numbered by their lowest body.
+int count_islands(const BodyGraph& graph, std::vector<int>* island_of_body = nullptr);
+
+// Connected components when only edges inside one part count; as many as there are parts when every part is
+// connected. part_of_body: (n), any ids.
+int count_pieces(const BodyGraph& graph, std::span<const int> part_of_body);
+
+}  // namespace cleave

@@ -1,0 +1,114 @@
+#include "partition/partition.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "partition/refuse.h"
+
+namespace cleave {
+namespace {
+
+void check_part_ids(const BodyGraph& graph, std::span<const int> part_of_body) {
+  const int n = graph.body_count();
+  if (static_cast<int>(part_of_body.size()) != n) refuse("size of part_of_body", part_of_body.size(), n);
+  for (int i = 0; i < n; ++i) {
+    if (part_of_body[i] >= 0 && part_of_body[i] < n) continue;
+    refuse("part_of_body of body " + std::to_string(i), part_of_body[i], "0 to " + std::to_string(n - 1));
+  }
+}
+
+// Cut edges of every body, (n).
+std::vector<int> count_cut_edges(const BodyGraph& graph, std::span<const int> part_of_body) {
+  std::vector<int> cut_edges(graph.body_count(), 0);
+  for (int i = 0; i < graph.body_count(); ++i) {
+    for (int j : graph.neighbours(i)) cut_edges[i] += part_of_body[i] != part_of_body[j];
+  }
+  return cut_edges;
+}
+
+// Greedy vertex cover. uncovered: cut edges of every body that no chosen body covers; used up. Bodies are
+// kept in buckets by that count, each a heap by index; a count only falls, so a stale body is put down where
+// it belongs.
+int count_cover_bodies(const BodyGraph& graph, std::span<const int> part_of_body,
+                       std::vector<int> uncovered) {
+  const int n = graph.body_count();
+  const int most = n == 0 ? 0 : *std::max_element(uncovered.begin(), uncovered.end());
+  std::vector<std::vector<int>> bucket(most + 1);
+  for (int i = 0; i < n; ++i) bucket[uncovered[i]].push_back(i);  // ascending: already heaps
+  int chosen = 0;
+  for (int count = most; count > 0; --count) {
+    std::vector<int>& heap = bucket[count];
+    while (!heap.empty()) {
+      std::pop_heap(heap.begin(), heap.end(), std::greater<>());
+      const int body = heap.back();
+      heap.pop_back();
+      if (uncovered[body] != count) {
+        std::vector<int>& lower = bucket[uncovered[body]];
+        lower.push_back(body);
+        std::push_heap(lower.begin(), lower.end(), std::greater<>());
+        continue;
+      }
+      ++chosen;
+      uncovered[body] = 0;
+      for (int other : graph.neighbours(body)) {
+        if (part_of_body[other] != part_of_body[body] && uncovered[other] > 0) --uncovered[other];
+      }
+    }
+  }
+  return chosen;
+}
+
+}  // namespace
+
+PartitionMetrics measure_partition(const BodyGraph& graph, std::span<const int> part_of_body) {
+  check_part_ids(graph, part_of_body);
+  const int n = graph.body_count();
+  PartitionMetrics metrics;
+  metrics.cut_pairs = static_cast<int>(cut_weight(graph, part_of_body, EdgeWeight::pairs));
+  metrics.cut_constraints = static_cast<int>(cut_weight(graph, part_of_body, EdgeWeight::constraints));
+  metrics.interface_rows = static_cast<int>(cut_weight(graph, part_of_body, EdgeWeight::rows));
+
+  std::vector<int> bodies(n, 0);
+  std::vector<double> lightest_kg(n, std::numeric_limits<double>::infinity()), heaviest_kg(n, 0.0);
+  for (int i = 0; i < n; ++i) {
+    const int part = part_of_body[i];
+    ++bodies[part];
+    lightest_kg[part] = std::min(lightest_kg[part], graph.mass_kg(i));
+    heaviest_kg[part] = std::max(heaviest_kg[part], graph.mass_kg(i));
+  }
+  for (int part = 0; part < n; ++part) {
+    if (bodies[part] == 0) continue;
+    ++metrics.parts;
+    metrics.max_part_bodies = std::max(metrics.max_part_bodies, bodies[part]);
+    metrics.part_mass_ratio_max =
+        std::max(metrics.part_mass_ratio_max, heaviest_kg[part] / lightest_kg[part]);
+  }
+  metrics.contiguous = count_pieces(graph, part_of_body) == metrics.parts;
+
+  const std::vector<int> cut_edges = count_cut_edges(graph, part_of_body);
+  metrics.interface_bodies = static_cast<int>(n - std::count(cut_edges.begin(), cut_edges.end(), 0));
+  metrics.interface_cover_bodies = count_cover_bodies(graph, part_of_body, cut_edges);
+  return metrics;
+}
+
+long cut_weight(const BodyGraph& graph, std::span<const int> part_of_body, EdgeWeight unit) {
+  long cut = 0;
+  for (int i = 0; i < graph.body_count(); ++i) {
+    for (int k = graph.first(i); k < graph.last(i); ++k) {
+      if (graph.neighbour(k) > i && part_of_body[graph.neighbour(k)] != part_of_body[i]) {
+        cut += graph.weight(k, unit);
+      }
+    }
+  }
+  return cut;
+}
+
+std::vector<int> part_sizes(const Partition& partition) {
+  std::vector<int> sizes(partition.part_count, 0);
+  for (int part : partition.part_of_body) ++sizes[part];
+  return sizes;
+}
+
+}  // namespace cleave

@@ -1,0 +1,43 @@
+// A partition of the bodies into parts (the subsystems of the parallel solver), and its metrics.
+//
+// Part ids are 0 .. part_count-1 in order of creation and stay so under refinement. No part is empty.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "partition/body_graph.h"
+
+namespace cleave {
+
+struct Partition {
+  std::vector<int> part_of_body;  // (n)
+  int part_count = 0;
+};
+
+// All numbers are computed from scratch from the graph and the part ids, never kept up to date by an
+// algorithm: they are what the incremental gains of the refiners are checked against.
+struct PartitionMetrics {
+  int parts = 0;
+  int max_part_bodies = 0;         // bodies of the largest part
+  int cut_pairs = 0;               // body pairs whose ends lie in different parts
+  int cut_constraints = 0;         // joints + contact points at the cut
+  int interface_rows = 0;          // constraint rows at the cut: the size of the interface system
+  int interface_bodies = 0;        // bodies with at least one cut edge
+  int interface_cover_bodies = 0;  // bodies of a small vertex cover of the cut edges (greedy: most uncovered
+                                   // cut edges first, lowest index on ties)
+  bool contiguous = true;          // every part is connected inside the part
+  double part_mass_ratio_max = 1;  // largest heaviest/lightest body within one part; 1 for single bodies
+};
+
+// Throws std::invalid_argument when part_of_body has not one id per body or an id lies outside [0, n). Ids
+// that no body carries are not counted as parts.
+PartitionMetrics measure_partition(const BodyGraph& graph, std::span<const int> part_of_body);
+
+// Total weight of the edges whose ends lie in different parts.
+long cut_weight(const BodyGraph& graph, std::span<const int> part_of_body, EdgeWeight unit);
+
+// Part sizes in bodies, by part id. Every id must lie in [0, part_count).
+std::vector<int> part_sizes(const Partition& partition);
+
+}  // namespace cleave

@@ -1,0 +1,12 @@
+// Solvers that are not a strategy on a kernel. One file each in this folder, one row each in registry.cpp.
+#pragma once
+
+#include <memory>
+
+#include "solver/step_solver.h"
+
+namespace cleave {
+
+std::unique_ptr<StepSolver> make_pgs(const SolveOptions& options);
+
+}  // namespace cleave

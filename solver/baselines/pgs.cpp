@@ -1,0 +1,52 @@
+// Solver `pgs`: projected Gauss-Seidel over the rows in their natural order, a fixed number of sweeps. The
+// iterative baseline: cheap, and honest about what it leaves (status not_converged unless the residual is
+// within the limit).
+#include "solver/baselines/baselines.h"
+#include "solver/gauss_seidel.h"
+
+namespace cleave {
+namespace {
+
+class Pgs : public StepSolver {
+ public:
+  explicit Pgs(const SolveOptions& options) : options_(options) {}
+  bool uses_partition() const override { return false; }
+
+ private:
+  SolveSummary do_solve(const StepProblem& problem, std::span<const int>, Solution& solution) override {
+    SolveSummary summary;
+    summary.strategy = "pgs";
+    summary.kernel = "-";
+    clock_.start();
+    {
+      StageTimer timer(clock_, Stage::analyze);
+      step_.prepare(problem);
+    }
+    {
+      StageTimer timer(clock_, Stage::predict);
+      step_.velocity(solution.impulse, solution.velocity);
+      gauss_seidel_sweeps(step_, options_.sweeps, solution.impulse, solution.velocity);
+      summary.iterations = options_.sweeps;
+    }
+    slack_.resize(problem.row_count());
+    step_.velocity(solution.impulse, solution.velocity);
+    step_.slack(solution.velocity, solution.impulse, slack_);
+    if (!(step_.residual(solution.impulse, slack_) <= 1e-9 * step_.velocity_scale())) {
+      summary.status = SolveStatus::not_converged;
+      summary.message = "residual above the limit after the last sweep";
+    }
+    summary.times = clock_.stop();
+    return summary;
+  }
+
+  SolveOptions options_;
+  StageClock clock_;
+  PreparedStep step_;
+  std::vector<double> slack_;
+};
+
+}  // namespace
+
+std::unique_ptr<StepSolver> make_pgs(const SolveOptions& options) { return std::make_unique<Pgs>(options); }
+
+}  // namespace cleave

@@ -1,0 +1,209 @@
+#include "solver/block_cholesky.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "solver/dense_block.h"
+
+namespace cleave {
+namespace {
+
+// y = W x or W^T x for a 6x6 lower triangular W (column-major), in place.
+void multiply_lower(const double* w, int ld, double* x) {
+  double y[6] = {};
+  for (int c = 0; c < 6; ++c) {
+    for (int r = c; r < 6; ++r) y[r] += w[r + c * ld] * x[c];
+  }
+  std::copy(y, y + 6, x);
+}
+
+void multiply_upper(const double* w, int ld, double* x) {
+  double y[6] = {};
+  for (int c = 0; c < 6; ++c) {
+    for (int r = c; r < 6; ++r) y[c] += w[r + c * ld] * x[r];
+  }
+  std::copy(y, y + 6, x);
+}
+
+}  // namespace
+
+void BlockCholesky::analyze(int node_count, std::span<const std::pair<int, int>> edges,
+                            std::span<const int> stage_of_node, int stage_count) {
+  symbolic_.analyze(node_count, edges, stage_of_node, stage_count);
+  panels_.resize(symbolic_.factor_size());
+  updates_.resize(symbolic_.update_size());
+  position_values_.resize(6 * static_cast<std::size_t>(node_count));
+}
+
+BlockCholesky::Place BlockCholesky::place(int first_node, int second_node) const {
+  const int p = symbolic_.position_of_node()[first_node], q = symbolic_.position_of_node()[second_node];
+  const int column = std::min(p, q), row = std::max(p, q);
+  const Supernode& s = symbolic_.supernodes()[symbolic_.supernode_at_position()[column]];
+  const auto begin = symbolic_.rows().begin() + s.first_row, end = begin + s.row_count;
+  const auto found = std::lower_bound(begin, end, row);
+  assert(found != end && *found == row);
+  Place place;
+  place.leading_dimension = 6 * s.row_count;
+  place.offset =
+      s.panel_offset + 6 * (found - begin) + 6L * (column - s.first_position) * place.leading_dimension;
+  place.transposed = q < p;
+  return place;
+}
+
+void BlockCholesky::set_zero(int stage) {
+  const auto [first, last] = symbolic_.stage_range(stage);
+  if (first == last) return;
+  const Supernode& end = symbolic_.supernodes()[last - 1];
+  std::fill(panels_.begin() + symbolic_.supernodes()[first].panel_offset,
+            panels_.begin() + end.panel_offset + 36L * end.width * end.row_count, 0.0);
+}
+
+// Adds the child's update matrix (lower triangle of blocks) into the parent's panel and update matrix. Runs
+// of rows that are adjacent in the parent too are added in one go.
+void BlockCholesky::add_update(const Supernode& child, const Supernode& parent) {
+  const int* target = symbolic_.row_in_parent().data() + child.first_row + child.width;
+  const int count = child.rows_below(), ld = 6 * count;
+  const double* update = updates_.data() + child.update_offset;
+  for (int column = 0; column < count; ++column) {
+    const int to = target[column];
+    const bool in_panel = to < parent.width;
+    const int to_ld = in_panel ? 6 * parent.row_count : 6 * parent.rows_below();
+    const int shift = in_panel ? 0 : parent.width;
+    double* block = in_panel ? panels_.data() + parent.panel_offset : updates_.data() + parent.update_offset;
+    block += 6L * (to - shift) * to_ld;
+    for (int row = column; row < count;) {
+      int end = row + 1;
+      while (end < count && target[end] == target[end - 1] + 1) ++end;
+      const double* from = update + 6L * column * ld + 6 * row;
+      double* into = block + 6 * (target[row] - shift);
+      const int length = 6 * (end - row);
+      for (int c = 0; c < 6; ++c, from += ld, into += to_ld) {
+        for (int k = 0; k < length; ++k) into[k] += from[k];
+      }
+      row = end;
+    }
+  }
+}
+
+bool BlockCholesky::factor_panel(const Supernode& s) {
+  const int ld = 6 * s.row_count;
+  double* panel = panels_.data() + s.panel_offset;
+  for (int k = 0; k < s.width; ++k) {
+    double* diagonal = panel + 6 * k + 6L * k * ld;
+    subtract_product(ld - 6 * k, 6 * k, panel + 6 * k, ld, panel + 6 * k, ld, diagonal, ld);
+    double inverse[36];
+    if (!invert_cholesky(diagonal, ld, inverse)) return false;
+    multiply_by_transpose(ld - 6 * k - 6, inverse, 6, diagonal + 6, ld);
+    for (int c = 0; c < 6; ++c) std::copy(inverse + 6 * c, inverse + 6 * c + 6, diagonal + c * ld);
+  }
+  const int below = s.rows_below(), update_ld = 6 * below;
+  const double* rows = panel + 6 * s.width;
+  double* update = updates_.data() + s.update_offset;
+  for (int k = 0; k < below; ++k) {
+    subtract_product(update_ld - 6 * k, 6 * s.width, rows + 6 * k, ld, rows + 6 * k, ld,
+                     update + 6 * k + 6L * k * update_ld, update_ld);
+  }
+  return true;
+}
+
+bool BlockCholesky::factor(int stage) {
+  const auto [first, last] = symbolic_.stage_range(stage);
+  for (int i = first; i < last; ++i) {
+    const Supernode& s = symbolic_.supernodes()[i];
+    std::fill_n(updates_.begin() + s.update_offset, 36L * s.rows_below() * s.rows_below(), 0.0);
+    for (int child : symbolic_.children(i)) add_update(symbolic_.supernodes()[child], s);
+    if (!factor_panel(s)) return false;
+  }
+  return true;
+}
+
+void BlockCholesky::forward(int stage, double* x, double* carry, std::vector<double>& scratch) const {
+  const auto [first, last] = symbolic_.stage_range(stage);
+  const int last_stage_begin = carry == nullptr ? symbolic_.node_count() : symbolic_.last_stage_position();
+  for (int i = first; i < last; ++i) {
+    const Supernode& s = symbolic_.supernodes()[i];
+    const int ld = 6 * s.row_count, below = 6 * s.rows_below();
+    const double* block = panel(s);
+    double* own = x + 6 * s.first_position;
+    for (int k = 0; k < s.width; ++k) {
+      multiply_lower(block + 6 * k + 6L * k * ld, ld, own + 6 * k);
+      subtract_matrix_vector(6 * (s.width - k - 1), 6, block + 6 * (k + 1) + 6L * k * ld, ld, own + 6 * k,
+                             own + 6 * (k + 1));
+    }
+    scratch.assign(below, 0.0);
+    subtract_matrix_vector(below, 6 * s.width, block + 6 * s.width, ld, own, scratch.data());
+    for (int k = 0; k < s.rows_below(); ++k) {
+      const int position = symbolic_.rows()[s.first_row + s.width + k];
+      double* into = (position >= last_stage_begin ? carry : x) + 6 * position;
+      for (int c = 0; c < 6; ++c) into[c] += scratch[6 * k + c];
+    }
+  }
+}
+
+void BlockCholesky::backward(int stage, double* x, std::vector<double>& scratch) const {
+  const auto [first, last] = symbolic_.stage_range(stage);
+  for (int i = last - 1; i >= first; --i) {
+    const Supernode& s = symbolic_.supernodes()[i];
+    const int ld = 6 * s.row_count, below = 6 * s.rows_below();
+    const double* block = panel(s);
+    double* own = x + 6 * s.first_position;
+    scratch.resize(below);
+    for (int k = 0; k < s.rows_below(); ++k) {
+      const double* from = x + 6 * symbolic_.rows()[s.first_row + s.width + k];
+      std::copy(from, from + 6, scratch.begin() + 6 * k);
+    }
+    subtract_transpose_vector(below, 6 * s.width, block + 6 * s.width, ld, scratch.data(), own);
+    for (int k = s.width - 1; k >= 0; --k) {
+      subtract_transpose_vector(6 * (s.width - k - 1), 6, block + 6 * (k + 1) + 6L * k * ld, ld,
+                                own + 6 * (k + 1), own + 6 * k);
+      multiply_upper(block + 6 * k + 6L * k * ld, ld, own + 6 * k);
+    }
+  }
+}
+
+void BlockCholesky::to_positions(std::span<const double> by_node, std::vector<double>& by_position) const {
+  by_position.resize(by_node.size());
+  for (int p = 0; p < symbolic_.node_count(); ++p) {
+    std::copy_n(by_node.data() + 6 * symbolic_.node_at_position()[p], 6, by_position.data() + 6 * p);
+  }
+}
+
+void BlockCholesky::to_nodes(std::span<const double> by_position, std::span<double> by_node) const {
+  for (int p = 0; p < symbolic_.node_count(); ++p) {
+    std::copy_n(by_position.data() + 6 * p, 6, by_node.data() + 6 * symbolic_.node_at_position()[p]);
+  }
+}
+
+void BlockCholesky::solve(std::span<double> x) {
+  to_positions(x, position_values_);
+  for (int stage = 0; stage < symbolic_.stage_count(); ++stage)
+    forward(stage, position_values_.data(), nullptr, scratch_);
+  for (int stage = symbolic_.stage_count() - 1; stage >= 0; --stage)
+    backward(stage, position_values_.data(), scratch_);
+  to_nodes(position_values_, x);
+}
+
+void BlockCholesky::forward_many(double* y, int ld, std::span<const int> first,
+                                 std::span<const int> last) const {
+  const auto supernodes = symbolic_.supernodes();
+  for (std::size_t i = 0; i < supernodes.size(); ++i) {
+    const Supernode& s = supernodes[i];
+    const int rows = last[i] - first[i];
+    if (rows <= 0) continue;
+    const int panel_ld = 6 * s.row_count;
+    const double* block = panel(s);
+    double* own = y + first[i] + 6L * s.first_position * ld;
+    for (int k = 0; k < s.width; ++k) {
+      double* column = own + 6L * k * ld;
+      subtract_product(rows, 6 * k, own, ld, block + 6 * k, panel_ld, column, ld);
+      multiply_by_transpose(rows, block + 6 * k + 6L * k * panel_ld, panel_ld, column, ld);
+    }
+    for (int k = s.width; k < s.row_count; ++k) {
+      const int position = symbolic_.rows()[s.first_row + k];
+      subtract_product(rows, 6 * s.width, own, ld, block + 6 * k, panel_ld, y + first[i] + 6L * position * ld,
+                       ld);
+    }
+  }
+}
+
+}  // namespace cleave

@@ -1,0 +1,66 @@
+// Numeric Cholesky factorisation H = L L^T of a sparse matrix of 6x6 blocks, multifrontal on supernodes.
+//
+// Each supernode owns a dense panel (its columns, all its rows). It adds the update matrices of its children,
+// factors its columns and leaves its own update matrix U -= L21 L21^T to its parent (Duff and Reid 1983). The
+// inverse of every 6x6 diagonal block of L is stored in the place of the block. Right-hand sides are (n, 6)
+// by node.
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "solver/block_symbolic.h"
+
+namespace cleave {
+
+class BlockCholesky {
+ public:
+  // Where the block of a node pair is stored: offset into panels(), its leading dimension, and whether it is
+  // stored as (row of second node, column of first) = false or the other way round = true.
+  struct Place {
+    long offset = 0;
+    int leading_dimension = 0;
+    bool transposed = false;
+  };
+
+  void analyze(int node_count, std::span<const std::pair<int, int>> edges,
+               std::span<const int> stage_of_node = {}, int stage_count = 1);
+  const BlockSymbolic& symbolic() const { return symbolic_; }
+
+  Place place(int first_node, int second_node) const;
+  double* panels() { return panels_.data(); }
+  void set_zero(int stage);
+
+  // Factors the supernodes of one stage; the last stage comes after all others. False when a pivot is not
+  // positive.
+  bool factor(int stage);
+
+  // x (n, 6) <- H^-1 x. scratch is kept inside: one solve at a time.
+  void solve(std::span<double> x);
+
+  // The same in parts, for stages that run in parallel; x is in position order, 6 doubles each. Contributions
+  // of a stage to positions of the last stage are added to `carry` (same layout as x) instead of x when carry
+  // is given.
+  void forward(int stage, double* x, double* carry, std::vector<double>& scratch) const;
+  void backward(int stage, double* x, std::vector<double>& scratch) const;
+  void to_positions(std::span<const double> by_node, std::vector<double>& by_position) const;
+  void to_nodes(std::span<const double> by_position, std::span<double> by_node) const;
+
+  // Y <- L^-1 Y for many right-hand sides of a single-stage factor. Transposed storage: right-hand side k of
+  // unknown c (position order) at y[k + c * ld]. In the columns of supernode s only right-hand sides first[s]
+  // .. last[s] may be non-zero; both bounds are even.
+  void forward_many(double* y, int ld, std::span<const int> first, std::span<const int> last) const;
+
+  const double* panel(const Supernode& s) const { return panels_.data() + s.panel_offset; }
+
+ private:
+  void add_update(const Supernode& child, const Supernode& parent);
+  bool factor_panel(const Supernode& s);
+
+  BlockSymbolic symbolic_;
+  std::vector<double> panels_, updates_;
+  std::vector<double> position_values_, scratch_;
+};
+
+}  // namespace cleave

@@ -1,0 +1,96 @@
+#include "solver/block_matrix.h"
+
+#include <algorithm>
+
+#include "solver/dense_block.h"
+
+namespace cleave {
+namespace {
+
+// target += the 6x6 block at `gram` (ld 12), or its transpose.
+void add_block(double* target, int ld, const double* gram, bool transposed) {
+  for (int c = 0; c < 6; ++c) {
+    for (int r = 0; r < 6; ++r) target[r + c * ld] += transposed ? gram[c + 12 * r] : gram[r + 12 * c];
+  }
+}
+
+}  // namespace
+
+void BlockMatrix::analyze(const PreparedStep& step, std::span<const int> bodies,
+                          std::span<const int> local_of_body, std::span<const int> groups,
+                          std::span<const int> stage_of_local, int stage_count) {
+  step_ = &step;
+  bodies_.assign(bodies.begin(), bodies.end());
+  stage_of_local_.assign(bodies.size(), 0);
+  if (!stage_of_local.empty()) stage_of_local_.assign(stage_of_local.begin(), stage_of_local.end());
+  edges_.clear();
+  for (int g : groups) {
+    const RowGroup& group = step.groups()[g];
+    if (group.body_b >= 0) edges_.emplace_back(local_of_body[group.body_a], local_of_body[group.body_b]);
+  }
+  cholesky_.analyze(static_cast<int>(bodies.size()), edges_, stage_of_local, stage_count);
+
+  entries_.clear();
+  entry_first_.assign(stage_count + 1, 0);
+  for (int stage = 0; stage < stage_count; ++stage) {
+    for (int g : groups) {
+      const RowGroup& group = step.groups()[g];
+      const int a = local_of_body[group.body_a], b = group.body_b < 0 ? -1 : local_of_body[group.body_b];
+      Entry entry;
+      entry.group = g;
+      entry.stage_a = stage_of_local_[a];
+      entry.stage_b = b < 0 ? -1 : stage_of_local_[b];
+      if ((b < 0 ? entry.stage_a : std::min(entry.stage_a, entry.stage_b)) != stage) continue;
+      entry.a = cholesky_.place(a, a);
+      if (b >= 0) entry.b = cholesky_.place(b, b), entry.ab = cholesky_.place(a, b);
+      entries_.push_back(entry);
+    }
+    entry_first_[stage + 1] = static_cast<int>(entries_.size());
+  }
+  late_entries_.clear();
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    if (entries_[i].stage_b < 0 || entries_[i].stage_a == entries_[i].stage_b) continue;
+    entries_[i].late = static_cast<int>(late_entries_.size());
+    late_entries_.push_back(static_cast<int>(i));
+  }
+  late_gram_.resize(144 * late_entries_.size());
+  late_any_.resize(late_entries_.size());
+}
+
+void BlockMatrix::assemble(std::span<const double> d, int stage) {
+  cholesky_.set_zero(stage);
+  double* panels = cholesky_.panels();
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (stage_of_local_[i] != stage) continue;
+    const BlockCholesky::Place place = cholesky_.place(static_cast<int>(i), static_cast<int>(i));
+    const double* mass = step_->problem().mass.data() + 36 * bodies_[i];
+    for (int c = 0; c < 6; ++c) {
+      for (int r = 0; r < 6; ++r) panels[place.offset + r + c * place.leading_dimension] += mass[r + 6 * c];
+    }
+  }
+  double local[144];
+  for (int i = entry_first_[stage]; i < entry_first_[stage + 1]; ++i) {
+    const Entry& entry = entries_[i];
+    const RowGroup& group = step_->groups()[entry.group];
+    double* gram = entry.late < 0 ? local : late_gram_.data() + 144 * entry.late;
+    const bool any = weighted_gram(group.row_count, step_->problem().jacobian.data() + 12 * group.first_row,
+                                   d.data() + group.first_row, gram);
+    if (entry.late >= 0) late_any_[entry.late] = any;
+    if (!any) continue;
+    if (entry.stage_a == stage) add_block(panels + entry.a.offset, entry.a.leading_dimension, gram, false);
+    if (entry.stage_b < 0) continue;
+    if (entry.stage_b == stage)
+      add_block(panels + entry.b.offset, entry.b.leading_dimension, gram + 78, false);
+    add_block(panels + entry.ab.offset, entry.ab.leading_dimension, gram + 6, entry.ab.transposed);
+  }
+  for (int i : late_entries_) {
+    const Entry& entry = entries_[i];
+    const bool a_is_late = entry.stage_a > entry.stage_b;
+    if (std::max(entry.stage_a, entry.stage_b) != stage || !late_any_[entry.late]) continue;
+    const BlockCholesky::Place& place = a_is_late ? entry.a : entry.b;
+    add_block(panels + place.offset, place.leading_dimension,
+              late_gram_.data() + 144 * entry.late + (a_is_late ? 0 : 78), false);
+  }
+}
+
+}  // namespace cleave

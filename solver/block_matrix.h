@@ -1,0 +1,53 @@
+// H = M + J^T D J over a set of bodies, as a sparse matrix of 6x6 blocks with its Cholesky factor.
+//
+// The pattern (which bodies share a row) is analysed once; assembly then adds the 12x12 Gram matrix of every
+// row group straight into the panels of the factor, at positions found by the analysis.
+//
+// Stages (see block_symbolic.h) let parts of H be assembled and factored by different threads. A group
+// between a body of an early stage and one of the last stage leaves its block of the last stage to be added
+// when that is assembled.
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "solver/block_cholesky.h"
+#include "solver/prepared_step.h"
+
+namespace cleave {
+
+class BlockMatrix {
+ public:
+  // bodies: the unknowns, by index in the problem; local_of_body[body] = place in `bodies`. groups: indices
+  // into step.groups() with every dynamic body in `bodies`. step must outlive the matrix.
+  void analyze(const PreparedStep& step, std::span<const int> bodies, std::span<const int> local_of_body,
+               std::span<const int> groups, std::span<const int> stage_of_local = {}, int stage_count = 1);
+
+  // D (m) >= 0 per row of the whole problem. The last stage comes after the others.
+  void assemble(std::span<const double> d, int stage);
+  bool factor(int stage) { return cholesky_.factor(stage); }
+
+  BlockCholesky& cholesky() { return cholesky_; }
+  const BlockCholesky& cholesky() const { return cholesky_; }
+
+ private:
+  struct Entry {
+    int group = 0;
+    int stage_a = 0, stage_b = -1;  // -1: static
+    BlockCholesky::Place a, b, ab;
+    int late = -1;  // slot of the Gram matrix kept for the last stage, -1 for none
+  };
+
+  const PreparedStep* step_ = nullptr;
+  BlockCholesky cholesky_;
+  std::vector<int> bodies_, stage_of_local_;
+  std::vector<Entry> entries_;    // sorted by stage of assembly
+  std::vector<int> entry_first_;  // (stages + 1)
+  std::vector<int> late_entries_;
+  std::vector<double> late_gram_;  // (late entries, 12, 12)
+  std::vector<char> late_any_;
+  std::vector<std::pair<int, int>> edges_;
+};
+
+}  // namespace cleave

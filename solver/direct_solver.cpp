@@ -1,0 +1,137 @@
+#include "solver/direct_solver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "solver/kernels/kernel.h"
+#include "solver/registry.h"
+#include "solver/strategies/automatic.h"
+#include "solver/strategies/strategy.h"
+
+namespace cleave {
+namespace {
+
+struct Link {
+  std::string_view name;
+  std::unique_ptr<Strategy> strategy;
+};
+
+class DirectSolver : public StepSolver {
+ public:
+  DirectSolver(std::string_view strategy, std::string_view kernel, bool splits, std::unique_ptr<Kernel> made,
+               const SolveOptions& options)
+      : strategy_(strategy),
+        kernel_name_(kernel),
+        splits_(splits),
+        options_(options),
+        kernel_(std::move(made)),
+        state_(options, clock_) {}
+
+  bool uses_partition() const override { return splits_; }
+
+ private:
+  SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
+                        Solution& solution) override;
+  void analyze(const StepProblem& problem, std::span<const int> part_of_body);
+  bool same_structure(const StepProblem& problem, std::span<const int> part_of_body) const;
+  bool run_chain(SolveSummary& summary);
+  Strategy& strategy(std::string_view name);
+
+  std::string strategy_, kernel_name_;
+  bool splits_;
+  SolveOptions options_;
+  StageClock clock_;
+  std::unique_ptr<Kernel> kernel_;
+  PreparedStep step_;
+  SolveState state_;
+  std::vector<Link> links_;  // strategies made so far
+  std::vector<int> analyzed_body_, analyzed_part_;
+};
+
+Strategy& DirectSolver::strategy(std::string_view name) {
+  for (Link& link : links_) {
+    if (link.name == name) return *link.strategy;
+  }
+  for (const StrategyRow& row : strategy_table()) {
+    if (row.entry.name == name && row.make != nullptr) {
+      links_.push_back({row.entry.name, row.make()});
+      return *links_.back().strategy;
+    }
+  }
+  throw std::logic_error("no strategy of this name: " + std::string(name));
+}
+
+bool DirectSolver::same_structure(const StepProblem& problem, std::span<const int> part_of_body) const {
+  return problem.row_body == analyzed_body_ && std::ranges::equal(part_of_body, analyzed_part_);
+}
+
+void DirectSolver::analyze(const StepProblem& problem, std::span<const int> part_of_body) {
+  {
+    StageTimer timer(clock_, Stage::analyze);
+    step_.prepare(problem);
+    if (options_.reuse_analysis && same_structure(problem, part_of_body)) return;
+    analyzed_body_ = problem.row_body;
+    analyzed_part_.assign(part_of_body.begin(), part_of_body.end());
+  }
+  kernel_->analyze(step_, part_of_body, state_.tasks);
+}
+
+// Runs the strategies one after the other until one succeeds; each hand-over is counted.
+bool DirectSolver::run_chain(SolveSummary& summary) {
+  const StrategyChoice choice = choose_strategies(strategy_, step_);
+  summary.auto_reason = choice.reason;
+  for (int k = 0; k < choice.count; ++k) {
+    if (k > 0) ++summary.fallbacks;
+    summary.strategy = choice.names[k];
+    if (strategy(choice.names[k]).run(state_)) return true;
+  }
+  return false;
+}
+
+SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const int> part_of_body,
+                                    Solution& solution) {
+  SolveSummary summary;
+  summary.kernel = kernel_name_;
+  clock_.start();
+  analyze(problem, part_of_body);
+  {
+    StageTimer timer(clock_, Stage::predict);
+    state_.begin(step_, *kernel_, summary, solution.impulse);
+    state_.part_of_body = part_of_body;
+  }
+  const bool solved = run_chain(summary);
+  for (std::size_t r = 0; r < state_.impulse.size(); ++r) {
+    solution.impulse[r] = std::clamp(state_.impulse[r], problem.lower[r], problem.upper[r]);
+  }
+  step_.velocity(solution.impulse, solution.velocity);
+  if (!solved) {
+    summary.status = SolveStatus::not_converged;
+    summary.message = "strategy " + summary.strategy + " stopped above the limit";
+    for (double v : solution.velocity) {
+      if (!std::isfinite(v)) summary.status = SolveStatus::diverged;
+    }
+  }
+  summary.interface_unknowns = kernel_->interface_unknowns();
+  summary.factor_mflop_local = kernel_->local_mflop();
+  summary.factor_mflop_interface = kernel_->interface_mflop();
+  summary.times = clock_.stop();
+  return summary;
+}
+
+}  // namespace
+
+std::unique_ptr<StepSolver> make_direct_solver(std::string_view strategy, std::string_view kernel,
+                                               const SolveOptions& options) {
+  const auto strategy_row = std::ranges::find(
+      strategy_table(), strategy, [](const auto& row) { return std::string_view(row.entry.name); });
+  const auto kernel_row = std::ranges::find(kernel_table(), kernel,
+                                            [](const auto& row) { return std::string_view(row.entry.name); });
+  if (strategy_row == strategy_table().end() || kernel_row == kernel_table().end()) return nullptr;
+  if (!runs_on(*strategy_row, *kernel_row)) return nullptr;
+  return std::make_unique<DirectSolver>(strategy, kernel_row->resolved, kernel_row->splits,
+                                        kernel_row->make(), options);
+}
+
+}  // namespace cleave

@@ -1,0 +1,69 @@
+// Kernel `dense`: H = M + J^T D J as one dense matrix, formed row by row and factored by Eigen. Slow and
+// obvious on purpose: it is the oracle of the other kernels and shares no code with them.
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include "solver/kernels/kernel.h"
+
+namespace cleave {
+namespace {
+
+class DenseKernel : public Kernel {
+ public:
+  void analyze(const PreparedStep& step, std::span<const int>, ParallelTasks& tasks) override {
+    StageTimer timer(tasks.clock(), Stage::analyze);
+    step_ = &step;
+    const StepProblem& problem = step.problem();
+    const int n = step.body_count(), m = step.row_count();
+    mass_.setZero(6 * n, 6 * n);
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < 36; ++k) mass_(6 * i + k / 6, 6 * i + k % 6) = problem.mass[36 * i + k];
+    }
+    jacobian_.setZero(m, 6 * n);
+    for (int r = 0; r < m; ++r) {
+      for (int k = 0; k < 12; ++k) {
+        const int body = problem.row_body[2 * r + k / 6];
+        if (body >= 0) jacobian_(r, 6 * body + k % 6) = problem.jacobian[12 * r + k];
+      }
+    }
+  }
+
+  bool factor(std::span<const double> d, ParallelTasks& tasks) override {
+    d_ = Eigen::Map<const Eigen::VectorXd>(d.data(), static_cast<Eigen::Index>(d.size()));
+    {
+      StageTimer timer(tasks.clock(), Stage::assemble);
+      h_ = mass_;
+      h_.noalias() += jacobian_.transpose() * d_.asDiagonal() * jacobian_;
+    }
+    StageTimer timer(tasks.clock(), Stage::factor_local);
+    factor_.compute(h_);
+    return factor_.info() == Eigen::Success;
+  }
+
+  void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
+             std::span<double> dlambda, ParallelTasks& tasks) override {
+    StageTimer timer(tasks.clock(), Stage::solve);
+    const auto size = [](auto s) { return static_cast<Eigen::Index>(s.size()); };
+    const Eigen::Map<const Eigen::VectorXd> fv(f_v.data(), size(f_v)), fr(f_r.data(), size(f_r));
+    Eigen::Map<Eigen::VectorXd> v(dv.data(), size(dv)), lambda(dlambda.data(), size(dlambda));
+    v = factor_.solve(fv + jacobian_.transpose() * d_.cwiseProduct(fr));
+    lambda = d_.cwiseProduct(fr - jacobian_ * v);
+  }
+
+  double local_mflop() const override {
+    const double size = static_cast<double>(mass_.rows());
+    return size * (size + 1) * (2 * size + 1) / 6 * 1e-6;
+  }
+
+ private:
+  const PreparedStep* step_ = nullptr;
+  Eigen::MatrixXd mass_, jacobian_, h_;
+  Eigen::VectorXd d_;
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+};
+
+}  // namespace
+
+std::unique_ptr<Kernel> make_dense_kernel() { return std::make_unique<DenseKernel>(); }
+
+}  // namespace cleave

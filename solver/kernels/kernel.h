@@ -1,0 +1,45 @@
+// A kernel solves the one linear system that every strategy needs, for changing weights D on a fixed pattern:
+//
+//     M dv - J^T dlambda       = f_v        (n, 6)
+//     J dv + D^-1 dlambda      = f_r        on rows with D > 0;  dlambda = 0 on rows with D = 0
+//
+// which is (M + J^T D J) dv = f_v + J^T D f_r with dlambda = D (f_r - J dv). Adding a kernel: one new file in
+// this folder and one row in registry.cpp.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "solver/parallel_tasks.h"
+#include "solver/prepared_step.h"
+
+namespace cleave {
+
+class Kernel {
+ public:
+  virtual ~Kernel() = default;
+
+  // Symbolic analysis of the pattern; step must outlive the kernel's use. part_of_body: (n), unused by
+  // kernels that do not split.
+  virtual void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) = 0;
+
+  // Numeric factorisation for D (m) >= 0. False when the matrix is not positive definite to working
+  // precision.
+  virtual bool factor(std::span<const double> d, ParallelTasks& tasks) = 0;
+
+  // Solves with the last factor; f_v (n, 6), f_r (m), dv (n, 6), dlambda (m).
+  virtual void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
+                     std::span<double> dlambda, ParallelTasks& tasks) = 0;
+
+  virtual int interface_unknowns() const { return 0; }
+  // Arithmetic of the last factorisation, without padding, in Mflop.
+  virtual double local_mflop() const = 0;
+  virtual double interface_mflop() const { return 0; }
+};
+
+std::unique_ptr<Kernel> make_dense_kernel();
+std::unique_ptr<Kernel> make_monolithic_kernel();
+std::unique_ptr<Kernel> make_schur_rows_kernel();
+std::unique_ptr<Kernel> make_schur_bodies_kernel();
+
+}  // namespace cleave

@@ -1,0 +1,62 @@
+// Kernel `monolithic`: one sparse block Cholesky factorisation of H = M + J^T D J over all bodies, in a
+// fill-reducing order that is found once per pattern.
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "solver/block_matrix.h"
+#include "solver/kernels/kernel.h"
+
+namespace cleave {
+namespace {
+
+class MonolithicKernel : public Kernel {
+ public:
+  void analyze(const PreparedStep& step, std::span<const int>, ParallelTasks& tasks) override {
+    StageTimer timer(tasks.clock(), Stage::analyze);
+    step_ = &step;
+    bodies_.resize(step.body_count());
+    groups_.resize(step.groups().size());
+    std::iota(bodies_.begin(), bodies_.end(), 0);
+    std::iota(groups_.begin(), groups_.end(), 0);
+    matrix_.analyze(step, bodies_, bodies_, groups_);
+    weighted_.resize(step.row_count());
+  }
+
+  bool factor(std::span<const double> d, ParallelTasks& tasks) override {
+    d_ = d;
+    {
+      StageTimer timer(tasks.clock(), Stage::assemble);
+      matrix_.assemble(d, 0);
+    }
+    StageTimer timer(tasks.clock(), Stage::factor_local);
+    return matrix_.factor(0);
+  }
+
+  void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
+             std::span<double> dlambda, ParallelTasks& tasks) override {
+    StageTimer timer(tasks.clock(), Stage::solve);
+    const int m = step_->row_count();
+    for (int r = 0; r < m; ++r) weighted_[r] = d_[r] * f_r[r];
+    std::copy(f_v.begin(), f_v.end(), dv.begin());
+    step_->add_jacobian_transpose(weighted_, dv);
+    matrix_.cholesky().solve(dv);
+    step_->jacobian_times(dv, dlambda);
+    for (int r = 0; r < m; ++r) dlambda[r] = d_[r] * (f_r[r] - dlambda[r]);
+  }
+
+  double local_mflop() const override { return matrix_.cholesky().symbolic().factor_flops(0) * 1e-6; }
+
+ private:
+  const PreparedStep* step_ = nullptr;
+  BlockMatrix matrix_;
+  std::vector<int> bodies_, groups_;
+  std::span<const double> d_;
+  std::vector<double> weighted_;
+};
+
+}  // namespace
+
+std::unique_ptr<Kernel> make_monolithic_kernel() { return std::make_unique<MonolithicKernel>(); }
+
+}  // namespace cleave

@@ -1,0 +1,128 @@
+// Kernel `schur-bodies`: the interface in body space. A vertex cover of the cut edges (vertex_cover.h) is the
+// interface; without those bodies the parts share no row, so with interiors I_1..I_p and cover K
+//
+//     H = | H_11           H_1K |      S = H_KK - sum_i H_Ki H_ii^-1 H_iK     (block-sparse)
+//         |       H_22     H_2K |
+//         | H_K1  H_K2 ... H_KK |
+//
+// interiors are eliminated in parallel, one task a part, then S. This is one sparse Cholesky factorisation
+// whose order is constrained to interiors first, so it needs no J H^-1 J^T, and stays factorable where all
+// cut rows are active.
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "solver/block_matrix.h"
+#include "solver/kernels/kernel.h"
+#include "solver/vertex_cover.h"
+
+namespace cleave {
+namespace {
+
+class SchurBodiesKernel : public Kernel {
+ public:
+  void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
+  bool factor(std::span<const double> d, ParallelTasks& tasks) override;
+  void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
+             std::span<double> dlambda, ParallelTasks& tasks) override;
+  int interface_unknowns() const override { return 6 * cover_bodies_; }
+  double local_mflop() const override {
+    const BlockSymbolic& symbolic = matrix_.cholesky().symbolic();
+    double sum = 0;
+    for (int part = 0; part < parts_; ++part) sum += symbolic.factor_flops(part);
+    return sum * 1e-6;
+  }
+  double interface_mflop() const override {
+    return matrix_.cholesky().symbolic().factor_flops(parts_) * 1e-6;
+  }
+
+ private:
+  const PreparedStep* step_ = nullptr;
+  std::span<const double> d_;
+  BlockMatrix matrix_;
+  int parts_ = 0, cover_bodies_ = 0;
+  std::vector<int> bodies_, groups_, stage_of_body_;
+  std::vector<std::pair<int, int>> cut_edges_;
+  std::vector<char> factored_;
+  std::vector<double> weighted_, by_node_, x_;
+  std::vector<std::vector<double>> carry_, scratch_;  // one per part
+};
+
+void SchurBodiesKernel::analyze(const PreparedStep& step, std::span<const int> part_of_body,
+                                ParallelTasks& tasks) {
+  StageTimer timer(tasks.clock(), Stage::analyze);
+  step_ = &step;
+  parts_ = 0;
+  for (int part : part_of_body) parts_ = std::max(parts_, part + 1);
+  cut_edges_.clear();
+  for (const RowGroup& group : step.groups()) {
+    if (group.body_b >= 0 && part_of_body[group.body_a] != part_of_body[group.body_b]) {
+      cut_edges_.emplace_back(group.body_a, group.body_b);
+    }
+  }
+  const std::vector<char> cover = vertex_cover(step.body_count(), cut_edges_);
+  stage_of_body_.assign(part_of_body.begin(), part_of_body.end());
+  cover_bodies_ = 0;
+  for (std::size_t body = 0; body < cover.size(); ++body) {
+    if (cover[body]) stage_of_body_[body] = parts_, ++cover_bodies_;
+  }
+  bodies_.resize(step.body_count());
+  groups_.resize(step.groups().size());
+  std::iota(bodies_.begin(), bodies_.end(), 0);
+  std::iota(groups_.begin(), groups_.end(), 0);
+  matrix_.analyze(step, bodies_, bodies_, groups_, stage_of_body_, parts_ + 1);
+  factored_.resize(parts_);
+  weighted_.resize(step.row_count());
+  by_node_.resize(6 * static_cast<std::size_t>(step.body_count()));
+  if (static_cast<int>(carry_.size()) < parts_) carry_.resize(parts_), scratch_.resize(parts_);
+  if (scratch_.empty()) scratch_.resize(1);
+}
+
+bool SchurBodiesKernel::factor(std::span<const double> d, ParallelTasks& tasks) {
+  d_ = d;
+  tasks.run(Stage::assemble, parts_, [&](int part) { matrix_.assemble(d, part); });
+  tasks.run(Stage::factor_local, parts_, [&](int part) { factored_[part] = matrix_.factor(part); });
+  if (std::ranges::find(factored_, 0) != factored_.end()) return false;
+  {
+    StageTimer timer(tasks.clock(), Stage::form_interface);
+    matrix_.assemble(d, parts_);
+  }
+  StageTimer timer(tasks.clock(), Stage::factor_interface);
+  return matrix_.factor(parts_);
+}
+
+void SchurBodiesKernel::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
+                              std::span<double> dlambda, ParallelTasks& tasks) {
+  const BlockCholesky& cholesky = matrix_.cholesky();
+  const int interface_begin = cholesky.symbolic().last_stage_position();
+  {
+    StageTimer timer(tasks.clock(), Stage::solve);
+    for (int r = 0; r < step_->row_count(); ++r) weighted_[r] = d_[r] * f_r[r];
+    std::copy(f_v.begin(), f_v.end(), by_node_.begin());
+    step_->add_jacobian_transpose(weighted_, by_node_);
+    cholesky.to_positions(by_node_, x_);
+  }
+  tasks.run(Stage::solve, parts_, [&](int part) {
+    carry_[part].assign(x_.size(), 0.0);
+    cholesky.forward(part, x_.data(), carry_[part].data(), scratch_[part]);
+  });
+  {
+    StageTimer timer(tasks.clock(), Stage::solve);
+    for (int part = 0; part < parts_; ++part) {
+      for (std::size_t k = 6 * interface_begin; k < x_.size(); ++k) x_[k] += carry_[part][k];
+    }
+    cholesky.forward(parts_, x_.data(), nullptr, scratch_[0]);
+    cholesky.backward(parts_, x_.data(), scratch_[0]);
+  }
+  tasks.run(Stage::solve, parts_, [&](int part) { cholesky.backward(part, x_.data(), scratch_[part]); });
+  StageTimer timer(tasks.clock(), Stage::solve);
+  cholesky.to_nodes(x_, dv);
+  step_->jacobian_times(dv, dlambda);
+  for (int r = 0; r < step_->row_count(); ++r) dlambda[r] = d_[r] * (f_r[r] - dlambda[r]);
+}
+
+}  // namespace
+
+std::unique_ptr<Kernel> make_schur_bodies_kernel() { return std::make_unique<SchurBodiesKernel>(); }
+
+}  // namespace cleave

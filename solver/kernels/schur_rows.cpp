@@ -1,0 +1,307 @@
+// Kernel `schur-rows`: the parallel solver of the paper. Bodies are split into parts; the rows at the cut are
+// the interface. With interior rows only in H_i = M_i + J_i^T D_i J_i (factored in parallel, one task a part)
+// and over the cut rows with D_c > 0
+//
+//     S lambda_c = f_c - sum_i J_ci H_i^-1 g_i,     S = D_c^-1 + sum_i J_ci H_i^-1 J_ci^T      (dense)
+//     dv_i = H_i^-1 (g_i + J_ci^T lambda_c),        g_i = f_v,i + J_i^T D_i f_i
+//
+// Source: Peiret, Andrews, Koevecses, Kry, Teichmann, "Schur complement-based substructuring of stiff
+// multibody systems with contact", ACM TOG 2019; Liu and Andrews 2022, section 2. With H_i = L_i L_i^T each
+// part keeps Y_i = L_i^-1 J_ci^T, so that J_ci H_i^-1 J_ci^T = Y_i^T Y_i and one half of every later solve is
+// a product with Y_i.
+#include <algorithm>
+#include <array>
+#include <vector>
+
+#include "solver/block_matrix.h"
+#include "solver/dense_block.h"
+#include "solver/dense_cholesky.h"
+#include "solver/interface_split.h"
+#include "solver/kernels/kernel.h"
+
+namespace cleave {
+namespace {
+
+int round_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
+
+// Everything one part owns; its tasks write nothing else.
+struct Part {
+  BlockMatrix matrix;
+  std::vector<int> order;          // entries of PartRows::cut_rows by supernode of their body
+  std::vector<int> active;         // of these, the entries with D > 0, in the same order
+  std::vector<int> interface_row;  // their rows of S
+  std::vector<int> begin;          // first right-hand side of each supernode, then their number
+  std::vector<int> first, last;    // range of right-hand sides that are non-zero at each supernode
+  std::vector<double> y;           // Y^T: (ld, 6 bodies), right-hand sides run fastest
+  std::vector<double> minus_gram;  // -Y^T Y (ld, ld), lower triangle
+  std::vector<double> velocity;    // L^-1 g, later dv, by position
+  std::vector<double> coupling;    // -Y^T L^-1 g (ld), later -lambda_c
+  std::vector<double> by_body;
+  std::vector<double> scratch;
+  int ld = 0;
+  bool factored = false;
+};
+
+class SchurRowsKernel : public Kernel {
+ public:
+  void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
+  bool factor(std::span<const double> d, ParallelTasks& tasks) override;
+  void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
+             std::span<double> dlambda, ParallelTasks& tasks) override;
+  int interface_unknowns() const override { return static_cast<int>(split_.cut_rows.size()); }
+  double local_mflop() const override;
+  double interface_mflop() const override { return interface_.mflop(); }
+
+ private:
+  void number_active_rows();
+  void choose_active(int part);
+  void form_complement(int part);
+  void gather_column(int column, double* s) const;
+  void reduce(int part, std::span<const double> f_v, std::span<const double> f_r);
+  void expand(int part, std::span<const double> f_r, std::span<double> dv, std::span<double> dlambda);
+
+  const PreparedStep* step_ = nullptr;
+  std::span<const double> d_;
+  InterfaceSplit split_;
+  std::vector<Part> parts_;
+  std::vector<int> interface_row_;                  // (cut rows) row of S, -1 where D = 0
+  std::vector<int> active_rows_;                    // (size of S) problem row
+  std::vector<std::array<int, 2>> column_part_;     // (size of S) the two parts of a column,
+  std::vector<std::array<int, 2>> column_in_part_;  // and its place among their right-hand sides
+  DenseCholesky interface_;
+  std::vector<double> lambda_;
+};
+
+void SchurRowsKernel::analyze(const PreparedStep& step, std::span<const int> part_of_body,
+                              ParallelTasks& tasks) {
+  step_ = &step;
+  {
+    StageTimer timer(tasks.clock(), Stage::analyze);
+    split_.split(step, part_of_body);
+    if (static_cast<int>(parts_.size()) < split_.part_count) parts_.resize(split_.part_count);
+    interface_row_.resize(split_.cut_rows.size());
+  }
+  tasks.run(Stage::analyze, split_.part_count, [&](int i) {
+    Part& part = parts_[i];
+    const PartRows& rows = split_.parts[i];
+    part.matrix.analyze(step, rows.bodies, split_.local_of_body, rows.groups);
+    const BlockSymbolic& symbolic = part.matrix.cholesky().symbolic();
+    const auto supernode = [&](int entry) {
+      const int body =
+          step.problem().row_body[2 * split_.cut_rows[rows.cut_rows[entry]] + rows.cut_side[entry]];
+      return symbolic.supernode_at_position()[symbolic.position_of_node()[split_.local_of_body[body]]];
+    };
+    part.order.resize(rows.cut_rows.size());
+    for (std::size_t k = 0; k < part.order.size(); ++k) part.order[k] = static_cast<int>(k);
+    std::sort(part.order.begin(), part.order.end(), [&](int x, int y) {
+      const int sx = supernode(x), sy = supernode(y);
+      return sx != sy ? sx < sy : x < y;
+    });
+  });
+}
+
+void SchurRowsKernel::number_active_rows() {
+  active_rows_.clear();
+  for (std::size_t c = 0; c < split_.cut_rows.size(); ++c) {
+    const bool active = d_[split_.cut_rows[c]] > 0;
+    interface_row_[c] = active ? static_cast<int>(active_rows_.size()) : -1;
+    if (active) active_rows_.push_back(split_.cut_rows[c]);
+  }
+  column_part_.assign(active_rows_.size(), {-1, -1});
+  column_in_part_.assign(active_rows_.size(), {-1, -1});
+}
+
+// Right-hand sides sorted by supernode: those that reach supernode s come from its subtree, a contiguous
+// range.
+void SchurRowsKernel::choose_active(int i) {
+  Part& part = parts_[i];
+  const PartRows& rows = split_.parts[i];
+  const BlockSymbolic& symbolic = part.matrix.cholesky().symbolic();
+  const int supernodes = static_cast<int>(symbolic.supernodes().size());
+  part.active.clear();
+  part.interface_row.clear();
+  std::vector<int>& begin = part.begin;
+  begin.assign(supernodes + 1, 0);
+  for (int entry : part.order) {
+    const int cut = rows.cut_rows[entry];
+    if (interface_row_[cut] < 0) continue;
+    const int body = step_->problem().row_body[2 * split_.cut_rows[cut] + rows.cut_side[entry]];
+    ++begin[symbolic.supernode_at_position()[symbolic.position_of_node()[split_.local_of_body[body]]] + 1];
+    part.active.push_back(entry);
+    part.interface_row.push_back(interface_row_[cut]);
+  }
+  for (int s = 0; s < supernodes; ++s) begin[s + 1] += begin[s];
+  part.ld = round_up(static_cast<int>(part.active.size()), 6);
+  part.first.resize(supernodes);
+  part.last.resize(supernodes);
+  for (int s = 0; s < supernodes; ++s) {
+    const int subtree = begin[symbolic.supernodes()[s].first_descendant];
+    const bool empty = subtree == begin[s + 1];
+    part.first[s] = subtree / 6 * 6;
+    part.last[s] = empty ? part.first[s] : std::min(part.ld, round_up(begin[s + 1], 6));
+  }
+}
+
+void SchurRowsKernel::form_complement(int i) {
+  Part& part = parts_[i];
+  const PartRows& rows = split_.parts[i];
+  const BlockSymbolic& symbolic = part.matrix.cholesky().symbolic();
+  part.y.assign(static_cast<std::size_t>(part.ld) * 6 * rows.bodies.size(), 0.0);
+  for (std::size_t k = 0; k < part.active.size(); ++k) {
+    const int row = split_.cut_rows[rows.cut_rows[part.active[k]]], side = rows.cut_side[part.active[k]];
+    const int body = step_->problem().row_body[2 * row + side];
+    const long position = symbolic.position_of_node()[split_.local_of_body[body]];
+    const double* j = step_->problem().jacobian.data() + 12 * row + 6 * side;
+    for (int c = 0; c < 6; ++c) part.y[k + (6 * position + c) * part.ld] = j[c];
+  }
+  part.matrix.cholesky().forward_many(part.y.data(), part.ld, part.first, part.last);
+  part.minus_gram.assign(static_cast<std::size_t>(part.ld) * part.ld, 0.0);
+  for (std::size_t s = 0; s < symbolic.supernodes().size(); ++s) {
+    const Supernode& node = symbolic.supernodes()[s];
+    const double* columns = part.y.data() + 6L * node.first_position * part.ld;
+    for (int k = part.first[s]; k < part.last[s]; k += 6) {
+      subtract_product(part.last[s] - k, 6 * node.width, columns + k, part.ld, columns + k, part.ld,
+                       part.minus_gram.data() + k + static_cast<long>(k) * part.ld, part.ld);
+    }
+  }
+}
+
+// One column of S from the two parts that meet at its row, in the order of the parts.
+void SchurRowsKernel::gather_column(int column, double* s) const {
+  const int size = interface_.size();
+  std::fill(s + column, s + size, 0.0);
+  for (int side = 0; side < 2; ++side) {
+    const Part& part = parts_[column_part_[column][side]];
+    const int k = column_in_part_[column][side];
+    for (std::size_t l = 0; l < part.interface_row.size(); ++l) {
+      const int row = part.interface_row[l];
+      const long low = std::max<long>(k, l), high = std::min<long>(k, l);
+      if (row >= column) s[row] -= part.minus_gram[low + high * part.ld];
+    }
+  }
+  s[column] += 1 / d_[active_rows_[column]];
+}
+
+bool SchurRowsKernel::factor(std::span<const double> d, ParallelTasks& tasks) {
+  d_ = d;
+  const int count = split_.part_count;
+  tasks.run(Stage::assemble, count, [&](int i) { parts_[i].matrix.assemble(d, 0); });
+  tasks.run(Stage::factor_local, count, [&](int i) { parts_[i].factored = parts_[i].matrix.factor(0); });
+  for (int i = 0; i < count; ++i) {
+    if (!parts_[i].factored) return false;
+  }
+  {
+    StageTimer timer(tasks.clock(), Stage::form_interface);
+    number_active_rows();
+  }
+  tasks.run(Stage::form_interface, count, [&](int i) {
+    choose_active(i);
+    form_complement(i);
+  });
+  double* s = nullptr;
+  {
+    StageTimer timer(tasks.clock(), Stage::form_interface);
+    for (int i = 0; i < count; ++i) {
+      for (std::size_t k = 0; k < parts_[i].interface_row.size(); ++k) {
+        const int column = parts_[i].interface_row[k], side = column_part_[column][0] < 0 ? 0 : 1;
+        column_part_[column][side] = i;
+        column_in_part_[column][side] = static_cast<int>(k);
+      }
+    }
+    s = interface_.resize(static_cast<int>(active_rows_.size()));
+  }
+  constexpr int kColumnsPerTask = 64;
+  const int size = interface_.size();
+  tasks.run(Stage::form_interface, (size + kColumnsPerTask - 1) / kColumnsPerTask, [&](int t) {
+    const int end = std::min(size, (t + 1) * kColumnsPerTask);
+    for (int c = t * kColumnsPerTask; c < end; ++c) gather_column(c, s + static_cast<long>(c) * size);
+  });
+  return interface_.factor(tasks);
+}
+
+// g_i, then L_i^-1 g_i and its coupling Y_i^T L_i^-1 g_i to the interface.
+void SchurRowsKernel::reduce(int i, std::span<const double> f_v, std::span<const double> f_r) {
+  Part& part = parts_[i];
+  const PartRows& rows = split_.parts[i];
+  part.by_body.resize(6 * rows.bodies.size());
+  for (std::size_t k = 0; k < rows.bodies.size(); ++k) {
+    std::copy_n(f_v.data() + 6 * rows.bodies[k], 6, part.by_body.data() + 6 * k);
+  }
+  for (int g : rows.groups) {
+    const RowGroup& group = step_->groups()[g];
+    double sum[12] = {};
+    for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
+      const double* j = step_->problem().jacobian.data() + 12 * r;
+      for (int c = 0; c < 12; ++c) sum[c] += j[c] * (d_[r] * f_r[r]);
+    }
+    double* a = part.by_body.data() + 6 * split_.local_of_body[group.body_a];
+    for (int c = 0; c < 6; ++c) a[c] += sum[c];
+    if (group.body_b < 0) continue;
+    double* b = part.by_body.data() + 6 * split_.local_of_body[group.body_b];
+    for (int c = 0; c < 6; ++c) b[c] += sum[6 + c];
+  }
+  part.matrix.cholesky().to_positions(part.by_body, part.velocity);
+  part.matrix.cholesky().forward(0, part.velocity.data(), nullptr, part.scratch);
+  part.coupling.assign(part.ld, 0.0);
+  subtract_matrix_vector(part.ld, static_cast<int>(part.velocity.size()), part.y.data(), part.ld,
+                         part.velocity.data(), part.coupling.data());
+}
+
+// dv_i = L_i^-T (L_i^-1 g_i + Y_i lambda_c), then the impulses of the interior rows.
+void SchurRowsKernel::expand(int i, std::span<const double> f_r, std::span<double> dv,
+                             std::span<double> dlambda) {
+  Part& part = parts_[i];
+  const PartRows& rows = split_.parts[i];
+  part.coupling.assign(part.ld, 0.0);
+  for (std::size_t k = 0; k < part.interface_row.size(); ++k)
+    part.coupling[k] = -lambda_[part.interface_row[k]];
+  subtract_transpose_vector(part.ld, static_cast<int>(part.velocity.size()), part.y.data(), part.ld,
+                            part.coupling.data(), part.velocity.data());
+  part.matrix.cholesky().backward(0, part.velocity.data(), part.scratch);
+  part.matrix.cholesky().to_nodes(part.velocity, part.by_body);
+  for (std::size_t k = 0; k < rows.bodies.size(); ++k) {
+    std::copy_n(part.by_body.data() + 6 * k, 6, dv.data() + 6 * rows.bodies[k]);
+  }
+  for (int g : rows.groups) {
+    const RowGroup& group = step_->groups()[g];
+    for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
+      const double* j = step_->problem().jacobian.data() + 12 * r;
+      double jv = 0;
+      for (int c = 0; c < 6; ++c) jv += j[c] * dv[6 * group.body_a + c];
+      for (int c = 0; c < 6 && group.body_b >= 0; ++c) jv += j[6 + c] * dv[6 * group.body_b + c];
+      dlambda[r] = d_[r] * (f_r[r] - jv);
+    }
+  }
+}
+
+void SchurRowsKernel::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
+                            std::span<double> dlambda, ParallelTasks& tasks) {
+  tasks.run(Stage::solve, split_.part_count, [&](int i) { reduce(i, f_v, f_r); });
+  {
+    StageTimer timer(tasks.clock(), Stage::solve);
+    lambda_.resize(active_rows_.size());
+    for (std::size_t c = 0; c < active_rows_.size(); ++c) lambda_[c] = f_r[active_rows_[c]];
+    for (int i = 0; i < split_.part_count; ++i) {
+      const Part& part = parts_[i];
+      for (std::size_t k = 0; k < part.interface_row.size(); ++k)
+        lambda_[part.interface_row[k]] += part.coupling[k];
+    }
+    interface_.solve(lambda_);
+    for (std::size_t c = 0; c < split_.cut_rows.size(); ++c) {
+      dlambda[split_.cut_rows[c]] = interface_row_[c] < 0 ? 0.0 : lambda_[interface_row_[c]];
+    }
+  }
+  tasks.run(Stage::solve, split_.part_count, [&](int i) { expand(i, f_r, dv, dlambda); });
+}
+
+double SchurRowsKernel::local_mflop() const {
+  double sum = 0;
+  for (int i = 0; i < split_.part_count; ++i) sum += parts_[i].matrix.cholesky().symbolic().factor_flops(0);
+  return sum * 1e-6;
+}
+
+}  // namespace
+
+std::unique_ptr<Kernel> make_schur_rows_kernel() { return std::make_unique<SchurRowsKernel>(); }
+
+}  // namespace cleave

@@ -1,0 +1,136 @@
+#include "solver/residual.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace cleave {
+namespace {
+
+// Sums run in extended precision: with a heavy body on a light one, impulses of 1e5 N s per kg cancel in w,
+// and in double the judge would see its own rounding errors.
+using Real = long double;
+using Vector6 = Eigen::Matrix<Real, 6, 1>;
+using Matrix6 = Eigen::Matrix<Real, 6, 6>;
+using ConstVector6 = Eigen::Map<const Eigen::Matrix<double, 6, 1>>;
+using ConstMatrix6 = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>;
+
+constexpr double kExactLimit = 1e-9;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// std::max drops a NaN that comes second; here a NaN on either side stays.
+double larger_or_nan(double a, double b) { return a > b || std::isnan(a) ? a : b; }
+
+struct BodyState {
+  Eigen::LLT<Matrix6> mass_factor;
+  Vector6 impulse = Vector6::Zero();  // J^T lambda
+  Vector6 velocity;
+};
+
+Vector6 jacobian_block(const StepProblem& problem, int row, int side) {
+  return ConstVector6(&problem.jacobian[12 * row + 6 * side]).cast<Real>();
+}
+
+std::vector<BodyState> find_body_states(const StepProblem& problem, std::span<const double> impulse) {
+  std::vector<BodyState> bodies(problem.body_count());
+  for (int r = 0; r < problem.row_count(); ++r) {
+    for (int side = 0; side < 2; ++side) {
+      const int body = problem.row_body[2 * r + side];
+      if (body >= 0) bodies[body].impulse += jacobian_block(problem, r, side) * Real(impulse[r]);
+    }
+  }
+  for (int i = 0; i < problem.body_count(); ++i) {
+    BodyState& body = bodies[i];
+    body.mass_factor.compute(ConstMatrix6(&problem.mass[36 * i]).cast<Real>());
+    body.velocity =
+        ConstVector6(&problem.free_velocity[6 * i]).cast<Real>() + body.mass_factor.solve(body.impulse);
+    if (body.mass_factor.info() != Eigen::Success) body.velocity.setConstant(kNan);
+  }
+  return bodies;
+}
+
+// d | lambda - clamp(lambda - w / d, lo, hi) | of one row, as | clamp(w, d (lambda - hi), d (lambda - lo)) |:
+// the same number without the division, whose cancellation would cost eps |lambda| d. A row that nothing can
+// move (d = 0) is measured with d = 1, which keeps the residual zero exactly at solutions.
+double find_row_residual(const StepProblem& problem, const std::vector<BodyState>& bodies, int row,
+                         Real impulse) {
+  Real slack = problem.compliance[row] * impulse - problem.rhs[row];
+  Real diagonal = problem.compliance[row];
+  for (int side = 0; side < 2; ++side) {
+    const int body = problem.row_body[2 * row + side];
+    if (body < 0) continue;
+    const Vector6 block = jacobian_block(problem, row, side);
+    slack += block.dot(bodies[body].velocity);
+    diagonal += block.dot(bodies[body].mass_factor.solve(block));
+  }
+  if (diagonal == 0) diagonal = 1;
+  const Real most = diagonal * (impulse - problem.lower[row]);
+  const Real least = diagonal * (impulse - problem.upper[row]);
+  return static_cast<double>(std::abs(std::clamp(slack, least, most)));
+}
+
+void judge_rows(const StepProblem& problem, const std::vector<BodyState>& bodies,
+                std::span<const double> impulse, ResidualReport& report) {
+  for (int r = 0; r < problem.row_count(); ++r) {
+    const double residual = find_row_residual(problem, bodies, r, impulse[r]);
+    double& of_kind = problem.row_kind[r] == RowKind::bilateral ? report.residual_bilateral_m_per_s
+                      : problem.row_kind[r] == RowKind::normal  ? report.residual_normal_m_per_s
+                                                                : report.residual_friction_m_per_s;
+    of_kind = larger_or_nan(of_kind, residual);
+    report.residual_m_per_s = larger_or_nan(report.residual_m_per_s, residual);
+  }
+}
+
+// 1/2 v^T M v - 1/2 v0^T M v0 is (J^T lambda)^T (v0 + v) / 2 because M (v - v0) = J^T lambda: a sum of small
+// terms in place of the difference of two large ones.
+void judge_energy(const StepProblem& problem, const std::vector<BodyState>& bodies,
+                  std::span<const double> impulse, ResidualReport& report) {
+  Real gain = 0;
+  Real kinetic = 0;
+  for (int i = 0; i < problem.body_count(); ++i) {
+    const BodyState& body = bodies[i];
+    gain += body.impulse.dot(body.velocity + ConstVector6(&problem.free_velocity[6 * i]).cast<Real>()) / 2;
+    kinetic += body.velocity.dot(ConstMatrix6(&problem.mass[36 * i]).cast<Real>() * body.velocity) / 2;
+  }
+  for (int r = 0; r < problem.row_count(); ++r) gain -= Real(impulse[r]) * problem.rhs[r];
+  report.energy_excess_j = static_cast<double>(gain);
+  report.kinetic_energy_j = static_cast<double>(kinetic);
+}
+
+// An infinite impulse can meet an infinite bound and look consistent, so nothing but NaN is reported for it.
+void report_nan(ResidualReport& report) {
+  report.residual_m_per_s = report.residual_bilateral_m_per_s = report.residual_normal_m_per_s =
+      report.residual_friction_m_per_s = report.energy_excess_j = report.kinetic_energy_j = kNan;
+  std::fill(report.velocity.begin(), report.velocity.end(), kNan);
+}
+
+}  // namespace
+
+ResidualReport judge(const StepProblem& problem, std::span<const double> impulse) {
+  assert(std::ssize(impulse) == problem.row_count());
+  ResidualReport report;
+  report.velocity.resize(problem.free_velocity.size());
+  for (const double entry : problem.free_velocity) {
+    report.largest_free_velocity_m_per_s =
+        larger_or_nan(report.largest_free_velocity_m_per_s, std::abs(entry));
+  }
+  report.limit_m_per_s = kExactLimit * larger_or_nan(report.largest_free_velocity_m_per_s, 1);
+
+  if (!std::all_of(impulse.begin(), impulse.end(), [](double value) { return std::isfinite(value); })) {
+    report_nan(report);
+    return report;
+  }
+  const std::vector<BodyState> bodies = find_body_states(problem, impulse);
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (int k = 0; k < 6; ++k) report.velocity[6 * i + k] = static_cast<double>(bodies[i].velocity[k]);
+  }
+  judge_rows(problem, bodies, impulse, report);
+  judge_energy(problem, bodies, impulse, report);
+  report.exact = report.residual_m_per_s <= report.limit_m_per_s;
+  return report;
+}
+
+}  // namespace cleave

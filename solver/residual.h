@@ -1,0 +1,37 @@
+// The judge: how far a set of impulses is from solving the step problem.
+//
+// Written from the arrays of step_problem.h alone and sharing no code with any solver, so that no solver can
+// vouch for itself. From lambda: v = v0 + M^-1 J^T lambda, w = J v + C lambda - b, and with d_r = (J M^-1 J^T
+// + C)_rr
+//
+//     residual = max_r d_r | lambda_r - clamp(lambda_r - w_r / d_r, lo_r, hi_r) |          m/s (rad/s)
+//
+// which is zero exactly at the solution. One limit everywhere: exact means
+// residual <= 1e-9 * max(1, largest |v0| entry).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/step_problem.h"
+
+namespace cleave {
+
+struct ResidualReport {
+  double residual_m_per_s = 0;            // over all rows
+  double residual_bilateral_m_per_s = 0;  // over the rows of one kind; 0 when there is none
+  double residual_normal_m_per_s = 0;
+  double residual_friction_m_per_s = 0;
+  double largest_free_velocity_m_per_s = 0;  // largest |entry| of v0
+  // (1/2 v^T M v - 1/2 v0^T M v0) - lambda^T b: an exact step has <= 0 where lo <= 0 <= hi.
+  double energy_excess_j = 0;
+  double kinetic_energy_j = 0;   // 1/2 v^T M v
+  double limit_m_per_s = 1e-9;   // 1e-9 * max(1, largest_free_velocity_m_per_s)
+  bool exact = false;            // residual within the limit (false for NaN)
+  std::vector<double> velocity;  // (n, 6) v recomputed from lambda
+};
+
+// impulse: (m). NaN or infinite impulses give a NaN residual and exact = false.
+ResidualReport judge(const StepProblem& problem, std::span<const double> impulse);
+
+}  // namespace cleave

@@ -1,0 +1,112 @@
+#include "solver/solve_state.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cleave {
+
+void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,
+                       std::span<const double> warm_impulse) {
+  step = &prepared;
+  kernel = &solve_kernel;
+  summary = &solve_summary;
+  const StepProblem& problem = prepared.problem();
+  const std::size_t m = problem.row_count(), n6 = 6 * static_cast<std::size_t>(problem.body_count());
+  impulse.resize(m);
+  for (std::size_t r = 0; r < m; ++r)
+    impulse[r] = std::clamp(warm_impulse[r], problem.lower[r], problem.upper[r]);
+  velocity.resize(n6);
+  slack.resize(m);
+  state.assign(m, RowState::free);
+  weight.assign(m, 0.0);
+  f_v.assign(n6, 0.0);
+  f_r.assign(m, 0.0);
+  dv.resize(n6);
+  dlambda.resize(m);
+  violated.clear();
+  update_velocity();
+}
+
+void SolveState::update_velocity() {
+  step->velocity(impulse, velocity);
+  step->slack(velocity, impulse, slack);
+}
+
+void SolveState::states_from_impulses() {
+  const StepProblem& problem = step->problem();
+  for (std::size_t r = 0; r < impulse.size(); ++r) {
+    state[r] = impulse[r] <= problem.lower[r]   ? RowState::lower
+               : impulse[r] >= problem.upper[r] ? RowState::upper
+                                                : RowState::free;
+  }
+}
+
+bool SolveState::factor_free() {
+  const StepProblem& problem = step->problem();
+  for (std::size_t r = 0; r < impulse.size(); ++r) {
+    // With C = 0 the step is a proximal one: the increment sees a small compliance, the slack it removes does
+    // not.
+    const double floor = 1e-13 * step->diagonal()[r];
+    weight[r] = state[r] == RowState::free ? 1 / std::max(problem.compliance[r], floor) : 0.0;
+    if (state[r] == RowState::lower) impulse[r] = problem.lower[r];
+    if (state[r] == RowState::upper) impulse[r] = problem.upper[r];
+  }
+  update_velocity();
+  ++summary->factorizations;
+  return kernel->factor(weight, tasks);
+}
+
+void SolveState::correct_free() {
+  std::fill(f_v.begin(), f_v.end(), 0.0);
+  for (std::size_t r = 0; r < impulse.size(); ++r) f_r[r] = -slack[r];
+  kernel->solve(f_v, f_r, dv, dlambda, tasks);
+  for (std::size_t r = 0; r < impulse.size(); ++r) {
+    if (state[r] == RowState::free) impulse[r] += dlambda[r];
+  }
+  update_velocity();
+}
+
+double SolveState::refine_free(double target, int most_steps, bool count) {
+  const auto largest = [&] {
+    double worst = 0;
+    for (std::size_t r = 0; r < impulse.size(); ++r) {
+      if (state[r] == RowState::free && !(std::abs(slack[r]) <= worst)) worst = std::abs(slack[r]);
+    }
+    return worst;
+  };
+  double worst = largest();
+  for (int k = 0; k < most_steps && worst > target; ++k) {
+    correct_free();
+    if (count) ++summary->refinements;
+    const double next = largest();
+    if (!(next < 0.5 * worst)) return next;
+    worst = next;
+  }
+  return worst;
+}
+
+int SolveState::find_violations(double tolerance) {
+  StageTimer timer(tasks.clock(), Stage::check);
+  const StepProblem& problem = step->problem();
+  violated.clear();
+  for (int r = 0; r < static_cast<int>(impulse.size()); ++r) {
+    const double lower = problem.lower[r], upper = problem.upper[r];
+    if (lower == upper) continue;
+    const double reach = tolerance / step->diagonal()[r];
+    const bool wrong = state[r] == RowState::free ? impulse[r] < lower - reach || impulse[r] > upper + reach
+                       : state[r] == RowState::lower ? slack[r] < -tolerance
+                                                     : slack[r] > tolerance;
+    if (wrong) violated.push_back(r);
+  }
+  return static_cast<int>(violated.size());
+}
+
+void SolveState::flip(int row) {
+  if (state[row] == RowState::free) {
+    state[row] = impulse[row] < step->problem().lower[row] ? RowState::lower : RowState::upper;
+  } else {
+    state[row] = RowState::free;
+  }
+}
+
+}  // namespace cleave

@@ -1,0 +1,66 @@
+// The iterate shared by the strategies of one solve: impulses, velocities, row slacks, the state of every
+// row, and the steps that all strategies take on a kernel. Scratch only grows.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "solver/kernels/kernel.h"
+#include "solver/prepared_step.h"
+#include "solver/step_solver.h"
+
+namespace cleave {
+
+// Where a row of the active set stands. Rows with lower = upper are always at a bound; a held row keeps its
+// impulse.
+enum class RowState : std::uint8_t { free, lower, upper, held };
+
+struct SolveState {
+  SolveState(const SolveOptions& solve_options, StageClock& clock)
+      : options(solve_options), tasks(clock, solve_options.threads) {}
+
+  // Binds the state to a problem; impulses start from the clamped warm start.
+  void begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,
+             std::span<const double> warm_impulse);
+
+  // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b from the impulses.
+  void update_velocity();
+
+  // Row states read off the impulses: at a bound exactly means bound, everything else free.
+  void states_from_impulses();
+
+  // Factors the system of the free rows (D = 1/C; 0 on bounded rows); bounded impulses are set to their
+  // bound. False when the kernel finds a non-positive pivot.
+  bool factor_free();
+
+  // One step of iterative refinement on the free rows with the present factor, in increments:
+  //   solve  M dv - J^T dlambda = 0,  J dv + C dlambda = -w  on free rows;  lambda += dlambda
+  void correct_free();
+
+  // correct_free until w on the free rows is below `target` or no longer falls; returns the largest |w| left.
+  double refine_free(double target, int most_steps, bool count);
+
+  // Rows whose impulse left its bounds, or whose slack has the wrong sign, beyond `tolerance` (m/s); fills
+  // `violated` and moves nothing.
+  int find_violations(double tolerance);
+
+  // Moves one violated row to the state its violation asks for.
+  void flip(int row);
+
+  double residual() const { return step->residual(impulse, slack); }
+
+  SolveOptions options;
+  ParallelTasks tasks;
+  const PreparedStep* step = nullptr;
+  Kernel* kernel = nullptr;
+  SolveSummary* summary = nullptr;
+
+  std::vector<double> impulse, velocity, slack;  // (m), (n, 6), (m)
+  std::vector<RowState> state;                   // (m)
+  std::vector<double> weight;                    // (m) D of the present factor
+  std::vector<double> f_v, f_r, dv, dlambda;     // right-hand sides and increments
+  std::vector<int> violated;                     // rows found by find_violations
+  std::span<const int> part_of_body;             // (n) of the solve, for strategies that look at the cut
+};
+
+}  // namespace cleave

@@ -1,0 +1,50 @@
+// One time step as a mixed linear complementarity problem (MLCP), in plain arrays.
+//
+// Bodies i = 0..n-1 with world-frame 6x6 mass blocks M_i and velocities (linear m/s, angular rad/s); rows r =
+// 0..m-1 with one 1x6 Jacobian block per body (the second is unused when that body is -1, static):
+//
+//     v = v0 + M^-1 J^T lambda                      velocity after the step
+//     w = J v + C lambda - b                        row slack, m/s (rad/s for angular rows)
+//     lo <= lambda <= hi,  w >= 0 where lambda = lo,  w <= 0 where lambda = hi,  w = 0 strictly between
+//
+// with h the step, v0 = u + h M^-1 (applied and gyroscopic forces) the free velocity, lambda impulses in N s
+// (N m s), C = cfm / h and b = (erp / h) * position error (or bounce, capped push-out) as ODE defines them.
+// C > 0 makes the solution unique; with C = 0 velocities are unique and impulses may not be.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace cleave {
+
+enum class RowKind : std::uint8_t { bilateral = 0, normal = 1, friction = 2 };
+
+struct StepProblem {
+  double h_s = 0;
+  std::vector<double> mass;                  // (n, 6, 6) row-major, kg and kg m^2
+  std::vector<double> free_velocity;         // (n, 6)
+  std::vector<int> row_body;                 // (m, 2); the first is never -1, the second may be
+  std::vector<double> jacobian;              // (m, 12): block of row_body[0], then of row_body[1]
+  std::vector<double> rhs;                   // (m) b, m/s
+  std::vector<double> compliance;            // (m) C = cfm / h, >= 0
+  std::vector<double> lower;                 // (m) lo, N s; -infinity allowed
+  std::vector<double> upper;                 // (m) hi, N s; +infinity allowed
+  std::vector<RowKind> row_kind;             // (m)
+  std::vector<int> friction_row;             // (m) index of the normal row a friction row belongs to, else -1
+  std::vector<double> friction_coefficient;  // (m) mu of a friction row, else 0
+  std::vector<int>
+      row_constraint;  // (m) id of the joint or contact point; rows of one constraint are adjacent
+  std::vector<double> contact_point;  // (m, 3) world position the row acts at, m
+  std::vector<double> warm_impulse;   // (m) impulses carried over from the previous step, N s
+
+  int body_count() const { return static_cast<int>(free_velocity.size() / 6); }
+  int row_count() const { return static_cast<int>(rhs.size()); }
+};
+
+// Empty when the arrays are consistent, else one line that names the array, the index, the value and what is
+// allowed: shapes, finite numbers, body ids in range, lo <= hi, C >= 0, positive definite mass blocks.
+std::string find_problem_error(const StepProblem& problem);
+
+}  // namespace cleave

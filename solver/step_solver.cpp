@@ -1,0 +1,52 @@
+#include "solver/step_solver.h"
+
+#include <cblas.h>
+
+#include <cassert>
+#include <stdexcept>
+
+#include "solver/direct_solver.h"
+#include "solver/registry.h"
+
+namespace cleave {
+
+const char* to_string(SolveStatus status) {
+  constexpr std::array<const char*, 8> names = {"ok",       "not_converged", "timeout", "out_of_memory",
+                                                "diverged", "refused",       "crashed", "skipped"};
+  return names[static_cast<std::size_t>(status)];
+}
+
+SolveSummary StepSolver::solve(const StepProblem& problem, std::span<const int> part_of_body,
+                               Solution& solution) {
+  SolveSummary summary;
+  solution.velocity.resize(problem.free_velocity.size());
+  solution.impulse.resize(problem.rhs.size(), 0.0);
+  summary.message = find_problem_error(problem);
+  if (summary.message.empty() && uses_partition() &&
+      part_of_body.size() != problem.free_velocity.size() / 6) {
+    summary.message =
+        "part_of_body has " + std::to_string(part_of_body.size()) + " entries, needs one per body";
+  }
+  if (!summary.message.empty()) {
+    summary.status = SolveStatus::refused;
+    return summary;
+  }
+  return do_solve(problem, part_of_body, solution);
+}
+
+std::unique_ptr<StepSolver> make_step_solver(std::string_view name, const SolveOptions& options) {
+  openblas_set_num_threads(1);  // parallelism is ours: one task, one thread
+  for (const SolverRow& row : solver_table()) {
+    if (row.entry.name != name) continue;
+    return row.make != nullptr ? row.make(options) : make_direct_solver(row.strategy, row.kernel, options);
+  }
+  const std::size_t colon = name.find(':');
+  std::unique_ptr<StepSolver> solver;
+  if (colon != std::string_view::npos) {
+    solver = make_direct_solver(name.substr(0, colon), name.substr(colon + 1), options);
+  }
+  if (solver == nullptr) throw std::invalid_argument(std::string(name));
+  return solver;
+}
+
+}  // namespace cleave

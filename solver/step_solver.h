@@ -1,0 +1,67 @@
+// A step solver finds the impulses of a StepProblem. A solver is a named pair strategy:kernel: the strategy
+// finds the active set (which rows sit at a bound), the kernel solves one linear system. See
+// solver/README.md.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "solver/solution.h"
+#include "solver/stage_clock.h"
+#include "solver/step_problem.h"
+
+namespace cleave {
+
+enum class SolveStatus { ok, not_converged, timeout, out_of_memory, diverged, refused, crashed, skipped };
+const char* to_string(SolveStatus status);
+
+struct SolveOptions {
+  int threads = 1;                // >= 1
+  double target_m_per_s = 1e-11;  // residual aimed at; exact is judged at 1e-9
+  int max_iterations = 100;       // of the strategy; a miss is a status, not a result
+  int sweeps = 5;                 // Gauss-Seidel sweeps: predictor of pivot, length of pgs
+  bool reuse_analysis = false;    // keep the symbolic analysis while the pattern and the parts are unchanged
+};
+
+struct SolveSummary {
+  SolveStatus status = SolveStatus::ok;
+  std::string message;   // why, when not ok
+  std::string strategy;  // what ran at the end
+  std::string kernel;
+  std::string auto_reason = "-";  // why auto chose it
+  int iterations = 0;             // active-set or interior-point iterations, sweeps for pgs
+  int factorizations = 0;         // numeric factorisations of the whole system
+  int fallbacks = 0;              // hand-overs from one strategy to the next
+  int refinements = 0;            // iterative refinement steps at the end
+  int interface_unknowns = 0;     // size of the interface system (rows, or 6 x bodies for schur-bodies)
+  double factor_mflop_local = 0;  // per factorisation, without padding, subsystem interiors
+  double factor_mflop_interface = 0;
+  StageTimes times;  // ms by named stage, total, and the modelled makespans
+};
+
+class StepSolver {
+ public:
+  virtual ~StepSolver() = default;
+
+  // part_of_body: (n) ids 0..parts-1 of the subsystems; ignored where !uses_partition().
+  // solution.impulse is the warm start (m); impulse and velocity are the result. The object keeps its
+  // scratch: the second solve of one structure allocates nothing in our code. Numerical trouble is a status,
+  // never an exception.
+  SolveSummary solve(const StepProblem& problem, std::span<const int> part_of_body, Solution& solution);
+
+  // Whether the result's cost depends on part_of_body; solvers that ignore partitions run once a step.
+  virtual bool uses_partition() const = 0;
+
+ private:
+  virtual SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
+                                Solution& solution) = 0;
+};
+
+// By name: a short name of registry.h ("schur") or strategy:kernel ("interior-point:monolithic"). Throws
+// std::invalid_argument for an unknown name (message: the name only; callers add the choices).
+std::unique_ptr<StepSolver> make_step_solver(std::string_view name, const SolveOptions& options);
+
+}  // namespace cleave

@@ -1,0 +1,28 @@
+#include "solver/strategies/automatic.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace cleave {
+namespace {
+
+// Block pivoting rarely cycles above this ratio and rarely ends below it on redundant contact.
+constexpr double kPivotCompliance = 1e-3;
+
+}  // namespace
+
+StrategyChoice choose_strategies(std::string_view strategy, const PreparedStep& step) {
+  if (strategy == "pivot") return {{"pivot", "interior-point"}, 2, "-"};
+  if (strategy != "auto") return {{strategy}, 1, "-"};
+  const StepProblem& problem = step.problem();
+  if (std::ranges::all_of(problem.row_kind, [](RowKind kind) { return kind == RowKind::bilateral; })) {
+    return {{"pivot", "interior-point"}, 2, "bilateral-only"};
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (int r = 0; r < step.row_count(); ++r)
+    least = std::min(least, problem.compliance[r] / step.diagonal()[r]);
+  if (least >= kPivotCompliance) return {{"pivot", "interior-point"}, 2, "compliant"};
+  return {{"interior-point"}, 1, "stiff"};
+}
+
+}  // namespace cleave

@@ -1,0 +1,27 @@
+// Which strategies a solve runs, in order: the chain of a named strategy, or what `auto` picks from what it
+// sees.
+//
+//   pivot           pivot, then interior-point when the violations stop falling
+//   auto            all rows bilateral: pivot (its first factorisation is the answer);
+//                   otherwise by the scaled compliance C_r / d_r, which bounds how nearly redundant rows may
+//                   become dependent: pivot above kPivotCompliance, interior-point below
+//   anything else   itself alone
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "solver/prepared_step.h"
+
+namespace cleave {
+
+struct StrategyChoice {
+  std::array<std::string_view, 3> names{};
+  int count = 0;
+  std::string reason = "-";  // filled by auto
+};
+
+StrategyChoice choose_strategies(std::string_view strategy, const PreparedStep& step);
+
+}  // namespace cleave

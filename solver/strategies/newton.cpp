@@ -1,0 +1,147 @@
+// Strategy `newton`: semi-smooth Newton on the velocity, with exact line search.
+//
+// With lambda(v) = clamp((b - J v) / C, lo, hi) the step problem is the unconstrained minimisation of the
+// convex, piecewise-quadratic energy
+//
+//     phi(v) = 1/2 (v - v0)^T M (v - v0) + sum_r psi_r(J_r v),   psi_r' = -lambda_r
+//
+// whose gradient is M (v - v0) - J^T lambda(v) and whose generalised Hessian is M + J_F^T C^-1 J_F over the
+// free rows F. Along a direction p the slope is piecewise linear in the step, so its zero is found exactly by
+// sorting the breakpoints where a row meets a bound. The energy falls in every iteration, so it cannot cycle;
+// at low compliance it becomes slow. Source: Qi and Sun 1993; Todorov, "Convex and analytically-invertible
+// dynamics with contacts", 2014.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "solver/gauss_seidel.h"
+#include "solver/strategies/strategy.h"
+
+namespace cleave {
+namespace {
+
+class Newton : public Strategy {
+ public:
+  bool run(SolveState& state) override {
+    {
+      StageTimer timer(state.tasks.clock(), Stage::predict);
+      gauss_seidel_sweeps(*state.step, state.options.sweeps, state.impulse, state.velocity);
+    }
+    const std::size_t m = state.impulse.size();
+    row_velocity_.resize(m);
+    row_step_.resize(m);
+    for (int k = 0; k < state.options.max_iterations; ++k) {
+      ++state.summary->iterations;
+      read_impulses(state);
+      const std::vector<double> velocity = state.velocity;
+      if (finish(state)) return true;
+      state.velocity = velocity;
+      read_impulses(state);
+      if (!direction(state)) return false;
+      const double step = line_search(state);
+      for (std::size_t c = 0; c < state.velocity.size(); ++c) state.velocity[c] += step * state.dv[c];
+    }
+    return false;
+  }
+
+ private:
+  // lambda(v) and the state of every row.
+  void read_impulses(SolveState& state) {
+    const StepProblem& problem = state.step->problem();
+    state.step->jacobian_times(state.velocity, row_velocity_);
+    for (std::size_t r = 0; r < state.impulse.size(); ++r) {
+      const double free = (problem.rhs[r] - row_velocity_[r]) / compliance(state, r);
+      state.impulse[r] = std::clamp(free, problem.lower[r], problem.upper[r]);
+    }
+    state.states_from_impulses();
+  }
+
+  static double compliance(const SolveState& state, std::size_t r) {
+    return std::max(state.step->problem().compliance[r], 1e-13 * state.step->diagonal()[r]);
+  }
+
+  // An exact solve on the present states ends the search when it violates nothing.
+  bool finish(SolveState& state) {
+    const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
+    if (state.state == last_state_) {
+      if (!state.factor_free()) return false;
+      state.refine_free(0.1 * tolerance, 8, true);
+      if (state.find_violations(tolerance) == 0) return state.residual() <= exact_limit_m_per_s(*state.step);
+    }
+    last_state_ = state.state;
+    return false;
+  }
+
+  // Newton direction dv from the gradient at v.
+  bool direction(SolveState& state) {
+    const StepProblem& problem = state.step->problem();
+    for (std::size_t r = 0; r < state.impulse.size(); ++r) {
+      state.weight[r] = state.state[r] == RowState::free ? 1 / compliance(state, r) : 0.0;
+    }
+    ++state.summary->factorizations;
+    if (!state.kernel->factor(state.weight, state.tasks)) return false;
+    std::fill(state.f_r.begin(), state.f_r.end(), 0.0);
+    for (std::size_t i = 0; i < state.velocity.size() / 6; ++i) {
+      for (int row = 0; row < 6; ++row) {
+        double sum = 0;
+        for (int c = 0; c < 6; ++c) {
+          sum += problem.mass[36 * i + 6 * row + c] *
+                 (problem.free_velocity[6 * i + c] - state.velocity[6 * i + c]);
+        }
+        state.f_v[6 * i + row] = sum;
+      }
+    }
+    state.step->add_jacobian_transpose(state.impulse, state.f_v);
+    state.kernel->solve(state.f_v, state.f_r, state.dv, state.dlambda, state.tasks);
+    return true;
+  }
+
+  // The step at which the slope of the energy along dv is zero.
+  double line_search(SolveState& state) {
+    const StepProblem& problem = state.step->problem();
+    state.step->jacobian_times(state.dv, row_step_);
+    // slope(t) = constant + t * rate; rows enter with their present piece and change it at their breakpoints.
+    double constant = 0, rate = 0;
+    for (std::size_t i = 0; i < state.dv.size() / 6; ++i) {
+      for (int k = 0; k < 36; ++k) {
+        const double left = state.dv[6 * i + k / 6] * problem.mass[36 * i + k];
+        constant += left * (state.velocity[6 * i + k % 6] - problem.free_velocity[6 * i + k % 6]);
+        rate += left * state.dv[6 * i + k % 6];
+      }
+    }
+    breakpoints_.clear();
+    for (std::size_t r = 0; r < state.impulse.size(); ++r) {
+      const double c = compliance(state, r), dw = row_step_[r];
+      constant -= dw * state.impulse[r];
+      const double curvature = dw * dw / c;
+      if (state.state[r] == RowState::free) rate += curvature;
+      if (dw == 0 || problem.lower[r] == problem.upper[r]) continue;
+      const double at_lower = (problem.rhs[r] - row_velocity_[r] - c * problem.lower[r]) / dw;
+      const double at_upper = (problem.rhs[r] - row_velocity_[r] - c * problem.upper[r]) / dw;
+      const double enter = std::min(at_lower, at_upper), leave = std::max(at_lower, at_upper);
+      if (enter > 0 && std::isfinite(enter)) breakpoints_.emplace_back(enter, curvature);
+      if (leave > 0 && std::isfinite(leave)) breakpoints_.emplace_back(leave, -curvature);
+    }
+    std::sort(breakpoints_.begin(), breakpoints_.end());
+    double t = 0, slope = constant;
+    for (const auto& [at, change] : breakpoints_) {
+      const double next = slope + rate * (at - t);
+      if (next >= 0) break;
+      slope = next;
+      t = at;
+      rate += change;
+    }
+    return rate > 0 ? t - slope / rate : t;
+  }
+
+  std::vector<double> row_velocity_, row_step_;
+  std::vector<std::pair<double, double>> breakpoints_;  // (step, change of the slope's rate)
+  std::vector<RowState> last_state_;
+};
+
+}  // namespace
+
+std::unique_ptr<Strategy> make_newton() { return std::make_unique<Newton>(); }
+
+}  // namespace cleave

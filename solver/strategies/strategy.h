@@ -1,0 +1,29 @@
+// A strategy finds the active set of a step problem: which rows are free (w = 0) and which sit at a bound.
+//
+// It works on a SolveState and any kernel, and ends with impulses refined to options.target_m_per_s. Adding a
+// strategy: one new file in this folder and one row in registry.cpp.
+#pragma once
+
+#include <memory>
+
+#include "solver/solve_state.h"
+
+namespace cleave {
+
+class Strategy {
+ public:
+  virtual ~Strategy() = default;
+  // True when the residual reached the target, or stopped falling below the limit of an exact answer. False
+  // leaves the best impulses it has, for the next strategy or as a result that is reported not converged.
+  virtual bool run(SolveState& state) = 0;
+};
+
+std::unique_ptr<Strategy> make_pivot();
+std::unique_ptr<Strategy> make_newton();
+std::unique_ptr<Strategy> make_interior_point();
+std::unique_ptr<Strategy> make_alternate();
+
+// The limit of an exact answer (step_problem.h): 1e-9 * max(1, largest |v0| entry), m/s.
+inline double exact_limit_m_per_s(const PreparedStep& step) { return 1e-9 * step.velocity_scale(); }
+
+}  // namespace cleave
