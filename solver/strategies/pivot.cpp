@@ -1,11 +1,13 @@
-// Strategy `pivot`: block principal pivoting, started from a few projected Gauss-Seidel sweeps.
+// Strategy `pivot`: block principal pivoting, started from projected Gauss-Seidel sweeps.
 //
-// Each iteration solves the rows that are free and flips all rows that violate their condition at once; while
-// the number of violations does not fall for several iterations it flips a single one (Murty's rule, the
-// violated row of highest index). Source: Judice and Pires, "A block principal pivoting algorithm for
-// large-scale strictly monotone linear complementarity problems", Computers & Operations Research 21, 1994;
-// Murty 1974. Block pivoting may cycle and single pivots may take very long, so it gives up, to be followed
-// by another strategy, when the count has stopped falling.
+// Each iteration solves the rows that are free and flips all rows that violate their condition at once. When
+// the number of violations does not fall, it restarts from a few sweeps at the clamped impulses; when that
+// does not help either, it flips single rows (Murty's rule, the violated row of highest index). Source:
+// Judice and Pires, "A block principal pivoting algorithm for large-scale strictly monotone linear
+// complementarity problems", Computers & Operations Research 21, 1994; Murty 1974. Block pivoting may cycle
+// and single pivots may take very long, so it gives up, to be followed by another strategy, when the count
+// has stopped falling.
+#include <algorithm>
 #include <limits>
 
 #include "solver/gauss_seidel.h"
@@ -14,20 +16,20 @@
 namespace cleave {
 namespace {
 
-constexpr int kBlockPatience = 3;  // block flips without a new least count of violations, before single ones
-constexpr int kSinglePatience = 10;  // single flips without one, before giving up
+// A sweep costs about a fifth of a factorisation; on settled piles of 200 boxes (cfm 1e-5, cold) 20 sweeps
+// leave 7 factorisations on average where 5 leave 11.
+constexpr int kPredictorSweeps = 20;
+constexpr int kRestartSweeps = 5;
+constexpr int kRestarts = 5;     // without a new least count of violations, before single flips
+constexpr int kSingleFlips = 5;  // without one, before giving up
 
 class Pivot : public Strategy {
  public:
   bool run(SolveState& state) override {
-    {
-      StageTimer timer(state.tasks.clock(), Stage::predict);
-      gauss_seidel_sweeps(*state.step, state.options.sweeps, state.impulse, state.velocity);
-      state.states_from_impulses();
-    }
-    int least = std::numeric_limits<int>::max(), patience = kBlockPatience, single = 0;
+    sweep(state, kPredictorSweeps);
+    int least = std::numeric_limits<int>::max(), stalled = 0;
     const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
-    while (state.summary->iterations < state.options.max_iterations) {
+    for (int k = 0; k < state.options.max_iterations; ++k) {
       ++state.summary->iterations;
       if (!state.factor_free()) return false;
       state.refine_free(tolerance, 3, false);
@@ -35,21 +37,31 @@ class Pivot : public Strategy {
       if (count == 0) return finish(state, tolerance);
       if (count < least) {
         least = count;
-        patience = kBlockPatience;
-        single = 0;
-      } else if (--patience < 0 && ++single > kSinglePatience) {
-        return false;
-      }
-      if (patience >= 0) {
+        stalled = 0;
         for (int row : state.violated) state.flip(row);
-      } else {
+      } else if (++stalled <= kRestarts) {
+        sweep(state, kRestartSweeps);
+      } else if (stalled <= kRestarts + kSingleFlips) {
         state.flip(state.violated.back());
+      } else {
+        return false;
       }
     }
     return false;
   }
 
  private:
+  static void sweep(SolveState& state, int sweeps) {
+    StageTimer timer(state.tasks.clock(), Stage::predict);
+    const StepProblem& problem = state.step->problem();
+    for (std::size_t r = 0; r < state.impulse.size(); ++r) {
+      state.impulse[r] = std::clamp(state.impulse[r], problem.lower[r], problem.upper[r]);
+    }
+    state.update_velocity();
+    gauss_seidel_sweeps(*state.step, sweeps, state.impulse, state.velocity);
+    state.states_from_impulses();
+  }
+
   static bool finish(SolveState& state, double tolerance) {
     StageTimer timer(state.tasks.clock(), Stage::refine);
     state.refine_free(0.1 * tolerance, 2, true);
