@@ -61,7 +61,18 @@ void BlockSymbolic::order(std::span<const int> stage_of_node) {
   position_of_node_.resize(node_count_);
   node_at_position_.resize(node_count_);
   if (node_count_ == 0) return;
-  int* constraint = stage_of_node.empty() ? nullptr : const_cast<int*>(stage_of_node.data());
+  // The ordering wants constraint sets below node_count, so the stages in use are numbered anew, in their order.
+  int* constraint = nullptr;
+  if (!stage_of_node.empty()) {
+    stack_.assign(stage_of_node.begin(), stage_of_node.end());
+    std::sort(stack_.begin(), stack_.end());
+    stack_.erase(std::unique(stack_.begin(), stack_.end()), stack_.end());
+    mark_.resize(node_count_);
+    for (int node = 0; node < node_count_; ++node) {
+      mark_[node] = static_cast<int>(std::ranges::lower_bound(stack_, stage_of_node[node]) - stack_.begin());
+    }
+    constraint = mark_.data();
+  }
   [[maybe_unused]] const int status = camd_order(node_count_, adjacency_first_.data(), adjacency_.data(),
                                                  node_at_position_.data(), nullptr, nullptr, constraint);
   assert(status == CAMD_OK);

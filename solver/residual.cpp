@@ -24,6 +24,10 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // std::max drops a NaN that comes second; here a NaN on either side stays.
 double larger_or_nan(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
+bool all_finite(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
+}
+
 struct BodyState {
   Eigen::LLT<Matrix6> mass_factor;
   Vector6 impulse = Vector6::Zero();  // J^T lambda
@@ -119,7 +123,7 @@ ResidualReport judge(const StepProblem& problem, std::span<const double> impulse
   }
   report.limit_m_per_s = kExactLimit * larger_or_nan(report.largest_free_velocity_m_per_s, 1);
 
-  if (!std::all_of(impulse.begin(), impulse.end(), [](double value) { return std::isfinite(value); })) {
+  if (!all_finite(impulse)) {
     report_nan(report);
     return report;
   }
@@ -131,6 +135,16 @@ ResidualReport judge(const StepProblem& problem, std::span<const double> impulse
   judge_energy(problem, bodies, impulse, report);
   report.exact = report.residual_m_per_s <= report.limit_m_per_s;
   return report;
+}
+
+std::vector<double> row_residuals(const StepProblem& problem, std::span<const double> impulse) {
+  assert(std::ssize(impulse) == problem.row_count());
+  std::vector<double> residuals(impulse.size(), kNan);
+  if (!all_finite(impulse)) return residuals;
+  const std::vector<BodyState> bodies = find_body_states(problem, impulse);
+  for (int r = 0; r < problem.row_count(); ++r)
+    residuals[r] = find_row_residual(problem, bodies, r, impulse[r]);
+  return residuals;
 }
 
 }  // namespace cleave

@@ -34,4 +34,7 @@ struct ResidualReport {
 // impulse: (m). NaN or infinite impulses give a NaN residual and exact = false.
 ResidualReport judge(const StepProblem& problem, std::span<const double> impulse);
 
+// (m) The residual of every row; their maximum is that of judge(). All NaN for NaN or infinite impulses.
+std::vector<double> row_residuals(const StepProblem& problem, std::span<const double> impulse);
+
 }  // namespace cleave

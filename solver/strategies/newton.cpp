@@ -31,6 +31,7 @@ class Newton : public Strategy {
     const std::size_t m = state.impulse.size();
     row_velocity_.resize(m);
     row_step_.resize(m);
+    last_state_.clear();
     for (int k = 0; k < state.options.max_iterations; ++k) {
       ++state.summary->iterations;
       read_impulses(state);

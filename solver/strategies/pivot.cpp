@@ -20,8 +20,10 @@ namespace {
 // leave 7 factorisations on average where 5 leave 11.
 constexpr int kPredictorSweeps = 20;
 constexpr int kRestartSweeps = 5;
-constexpr int kRestarts = 5;     // without a new least count of violations, before single flips
-constexpr int kSingleFlips = 5;  // without one, before giving up
+// An iteration makes progress when it leaves less than this share of the least number of violations so far.
+constexpr double kProgress = 0.75;
+constexpr int kRestarts = 2;     // without a new least count of violations, before single flips
+constexpr int kSingleFlips = 1;  // without progress, before giving up
 
 class Pivot : public Strategy {
  public:
@@ -35,7 +37,7 @@ class Pivot : public Strategy {
       state.refine_free(tolerance, 3, false);
       const int count = state.find_violations(tolerance);
       if (count == 0) return finish(state, tolerance);
-      if (count < least) {
+      if (count < kProgress * least) {
         least = count;
         stalled = 0;
         for (int row : state.violated) state.flip(row);

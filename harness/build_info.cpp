@@ -1,0 +1,91 @@
+#include "harness/build_info.h"
+
+#include <camd.h>
+#include <cblas.h>
+#include <hdf5.h>
+#include <ode/ode.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <unistd.h>
+#include <CLI/Version.hpp>
+#include <Eigen/Core>
+
+#include <ctime>
+#include <fstream>
+#include <limits>
+
+// Written by build_info.cmake; a build without it says "unknown".
+#if __has_include("cleave_build_info.h")
+#include "cleave_build_info.h"
+#else
+#define CLEAVE_GIT_HASH "unknown"
+#define CLEAVE_GIT_DIRTY "unknown"
+#define CLEAVE_COMPILE_FLAGS "unknown"
+#define CLEAVE_BUILD_TYPE "unknown"
+#endif
+
+#ifdef __clang__
+#define CLEAVE_COMPILER __VERSION__  // begins with "Clang"
+#else
+#define CLEAVE_COMPILER "GCC " __VERSION__
+#endif
+
+namespace cleave {
+namespace {
+
+std::string cpu_model() {
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+std::string dotted(int major, int minor, int patch) {
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
+}
+
+}  // namespace
+
+BuildInfo build_info() {
+  return {CLEAVE_GIT_HASH, CLEAVE_GIT_DIRTY, CLEAVE_COMPILER, CLEAVE_COMPILE_FLAGS, CLEAVE_BUILD_TYPE};
+}
+
+std::vector<std::pair<std::string, std::string>> library_versions() {
+  unsigned hdf5[3];
+  H5get_libversion(&hdf5[0], &hdf5[1], &hdf5[2]);
+  return {
+      {"ode", std::string(dODE_VERSION) + " " + dGetConfiguration()},
+      {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+      {"suitesparse", dotted(SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION, SUITESPARSE_SUBSUB_VERSION)},
+      {"camd", dotted(CAMD_MAIN_VERSION, CAMD_SUB_VERSION, CAMD_SUBSUB_VERSION)},
+      {"openblas", openblas_get_config()},
+      {"hdf5", dotted(static_cast<int>(hdf5[0]), static_cast<int>(hdf5[1]), static_cast<int>(hdf5[2]))},
+      {"openmp", std::to_string(_OPENMP)},
+      {"cli11", CLI11_VERSION}};
+}
+
+MachineInfo machine_info() {
+  MachineInfo info;
+  char host[256] = "";
+  info.host = ::gethostname(host, sizeof host - 1) == 0 ? host : "unknown";
+  info.cpu_model = cpu_model();
+  info.cores = omp_get_num_procs();
+  if (::getloadavg(info.load_average.data(), 3) != 3)
+    info.load_average.fill(std::numeric_limits<double>::quiet_NaN());
+  info.omp_threads = omp_get_max_threads();
+  info.blas_threads = openblas_get_num_threads();
+  return info;
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+}  // namespace cleave

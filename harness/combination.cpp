@@ -1,0 +1,180 @@
+#include "harness/combination.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <new>
+
+#include "harness/hash.h"
+
+namespace cleave {
+namespace {
+
+SolveOptions solve_options(const RunOptions& options) {
+  SolveOptions solve;
+  solve.threads = options.threads;
+  solve.sweeps = options.sweeps;
+  solve.reuse_analysis = options.reuse_analysis;
+  return solve;
+}
+
+// What the solver is handed: a solver that ignores parts still receives one id per body.
+std::vector<int> solver_parts(const std::optional<Split>& split, const StepProblem& problem) {
+  return split ? split->parts.part_of_body : std::vector<int>(problem.body_count(), 0);
+}
+
+bool all_finite(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+// The judge's word counts: a solver that says ok is believed only within the limit.
+void judge_outcome(const StepProblem& problem, Outcome& outcome) {
+  outcome.verdict = judge(problem, outcome.solution.impulse);
+  outcome.finite = all_finite(outcome.solution.impulse) && all_finite(outcome.solution.velocity) &&
+                   all_finite(outcome.verdict.velocity);
+  if (!outcome.finite) {
+    outcome.status = SolveStatus::diverged;
+  } else if (outcome.status == SolveStatus::ok && !outcome.verdict.exact) {
+    outcome.status = SolveStatus::not_converged;
+  }
+}
+
+bool same_bytes(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+// Index of the median of a number per repeat; the lower middle one of an even number.
+template <class Items, class Value>
+std::size_t median_index(const Items& items, Value value) {
+  std::vector<std::size_t> order(items.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return value(items[i]); });
+  return order[(order.size() - 1) / 2];
+}
+
+template <class Items, class Value>
+double median(const Items& items, Value value) {
+  return value(items[median_index(items, value)]);
+}
+
+template <class Repeats>
+void set_split(const Repeats& repeats, StepRecord& row) {
+  const Split& split = *repeats.front().split;
+  row.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
+  row.set_partition(measure_partition(split.graph, split.parts.part_of_body));
+  row.t_graph_ms = median(repeats, [](const auto& repeat) { return repeat.split->graph_ms; });
+  row.t_partition_ms = median(repeats, [](const auto& repeat) { return repeat.split->partition_ms; });
+  row.t_refine_ms = median(repeats, [](const auto& repeat) { return repeat.split->refine_ms; });
+  row.t_pr_ms = median(
+      repeats, [](const auto& repeat) { return repeat.split->partition_ms + repeat.split->refine_ms; });
+}
+
+CombinationName without_parts(std::string solver) { return {"-", "-", std::move(solver)}; }
+
+}  // namespace
+
+Combination::Combination(CombinationName name, const RunOptions& options)
+    : name_(std::move(name)),
+      repeats_(options.repeats),
+      solver_(make_step_solver(name_.solver, solve_options(options))) {
+  if (solver_->uses_partition()) {
+    splitter_.emplace(name_.partitioner, name_.refiner, options);
+  } else {
+    name_ = without_parts(name_.solver);
+  }
+}
+
+std::optional<Split> Combination::split(const StepProblem& problem) const {
+  return splitter_ ? std::optional(splitter_->run(problem)) : std::nullopt;
+}
+
+Combination::Repeat Combination::repeat(const StepProblem& problem) {
+  Repeat repeat{split(problem), {}};
+  Outcome& outcome = repeat.outcome;
+  outcome.solution.impulse = problem.warm_impulse;
+  outcome.solution.velocity.assign(problem.free_velocity.size(), 0.0);
+  try {
+    outcome.summary = solver_->solve(problem, solver_parts(repeat.split, problem), outcome.solution);
+    outcome.status = outcome.summary.status;
+  } catch (const std::bad_alloc&) {
+    outcome.status = SolveStatus::out_of_memory;
+    outcome.solution = {problem.warm_impulse, problem.free_velocity};
+  }
+  return repeat;
+}
+
+void Combination::set_names(StepRecord& row) const {
+  row.partitioner = name_.partitioner;
+  row.refiner = name_.refiner;
+  row.solver = name_.solver;
+}
+
+Outcome Combination::solve(const StepProblem& problem) {
+  Outcome outcome = repeat(problem).outcome;
+  judge_outcome(problem, outcome);
+  return outcome;
+}
+
+Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
+  std::vector<Repeat> repeats;
+  for (int i = 0; i < repeats_; ++i) {
+    repeats.push_back(repeat(problem));
+    // What one solve leaves in the solver's scratch must not reach the next, or repeats would time another
+    // problem.
+    assert(same_bytes(repeats.back().outcome.solution.impulse, repeats.front().outcome.solution.impulse));
+  }
+  const auto total_ms = [](const Repeat& repeat) { return repeat.outcome.summary.times.total_ms; };
+  Repeat& chosen = repeats[median_index(repeats, total_ms)];
+  judge_outcome(problem, chosen.outcome);
+
+  set_names(row);
+  row.repeat_count = repeats_;
+  row.status = to_string(chosen.outcome.status);
+  if (splitter_) set_split(repeats, row);
+  row.set_summary(chosen.outcome.summary);
+  row.t_s_min_ms = std::ranges::min(repeats, {}, total_ms).outcome.summary.times.total_ms;
+  row.set_verdict(chosen.outcome.verdict);
+  row.bound_mismatch = bound_mismatch(problem, chosen.outcome.solution.impulse);
+  if (splitter_) chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
+  row.solution_hash = hex(solution_hash(chosen.outcome.solution.impulse, chosen.outcome.part_of_body));
+  return std::move(chosen.outcome);
+}
+
+ConvergedBounds Combination::converge_bounds(StepProblem& problem) {
+  Solution solution{problem.warm_impulse, {}};
+  return converge_friction_bounds(problem, *solver_, solver_parts(split(problem), problem), solution);
+}
+
+std::vector<Combination> make_combinations(const RunOptions& options) {
+  std::vector<Combination> splitting, whole;
+  const auto ignores_parts = [&](const std::string& solver) {
+    return !make_step_solver(solver, solve_options(options))->uses_partition();
+  };
+  for (const std::string& partitioner : options.partitioners)
+    for (const std::string& refiner : options.refiners)
+      for (const std::string& solver : options.solvers)
+        if (!ignores_parts(solver))
+          splitting.emplace_back(CombinationName{partitioner, refiner, solver}, options);
+  for (const std::string& solver : options.solvers)
+    if (ignores_parts(solver)) whole.emplace_back(without_parts(solver), options);
+  std::ranges::move(whole, std::back_inserter(splitting));
+  return splitting;
+}
+
+std::vector<Outcome> measure_all(std::span<Combination> combinations, const StepProblem& problem, int turn,
+                                 std::span<StepRecord> rows) {
+  std::vector<Outcome> outcomes(combinations.size());
+  for (std::size_t k = 0; k < combinations.size(); ++k) {
+    const std::size_t i = (k + static_cast<std::size_t>(turn)) % combinations.size();
+    outcomes[i] = combinations[i].measure(problem, rows[i]);
+  }
+  return outcomes;
+}
+
+Combination make_advancing_combination(const RunOptions& options) {
+  return {{options.partitioners.front(), options.refiners.front(), options.advance}, options};
+}
+
+}  // namespace cleave

@@ -1,0 +1,16 @@
+#include "harness/commands/command.h"
+
+namespace cleave {
+
+std::span<const Command> commands() {
+  static constexpr Command table[] = {
+      {"list", "name the scenes, partitioners, refiners, solvers, ... there are", declare_list},
+      {"run", "simulate a scene and measure every combination on it", declare_run},
+      {"record", "simulate a scene and write the problems of chosen steps to files", declare_record},
+      {"replay", "solve recorded problems with every combination", declare_replay},
+      {"verify", "check solutions, partitions and rows from the files alone", declare_verify},
+  };
+  return table;
+}
+
+}  // namespace cleave

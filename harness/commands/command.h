@@ -1,0 +1,38 @@
+// The commands of the program. To add one: a file in this folder and a row in command.cpp.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace cleave {
+
+// Exit codes of the program.
+enum ExitCode {
+  kExitOk = 0,
+  kExitBadInput = 1,
+  kExitCellsFailed = 2,
+  kExitVerifyFailed = 3,
+  kExitInterrupted = 130
+};
+
+struct Command {
+  const char* name;
+  const char* help;
+  // Declares the command's options on `app` and returns what to do once they are parsed: the exit code, or
+  // std::invalid_argument / std::runtime_error with one line that main prints after "cleave <command>: ".
+  std::function<int()> (*declare)(CLI::App& app, const std::vector<std::string>& argv);
+};
+
+std::span<const Command> commands();
+
+std::function<int()> declare_list(CLI::App& app, const std::vector<std::string>& argv);
+std::function<int()> declare_run(CLI::App& app, const std::vector<std::string>& argv);
+std::function<int()> declare_record(CLI::App& app, const std::vector<std::string>& argv);
+std::function<int()> declare_replay(CLI::App& app, const std::vector<std::string>& argv);
+std::function<int()> declare_verify(CLI::App& app, const std::vector<std::string>& argv);
+
+}  // namespace cleave

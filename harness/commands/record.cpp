@@ -1,0 +1,106 @@
+// cleave record: simulates and writes the problem of chosen steps, one file each.
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string_view>
+
+#include "harness/commands/command.h"
+#include "harness/commands/run_command_line.h"
+#include "harness/commands/simulate.h"
+#include "harness/extract_shapes.h"
+#include "harness/nearest_name.h"
+#include "harness/options.h"
+#include "harness/options_text.h"
+#include "harness/output_directory.h"
+#include "harness/problem_file.h"
+
+namespace cleave {
+namespace {
+
+using Given = std::map<std::string, std::string>;
+
+// One solver advances the world and nothing is compared, so the options about that mean nothing here.
+bool has_option(const std::string& name) {
+  constexpr std::array<std::string_view, 8> without = {"solver", "strategy",      "kernel", "mode",
+                                                       "steps",  "measure-every", "skip",   "record-motion"};
+  return std::ranges::find(without, name) == without.end();
+}
+
+// Parts are there for --advance alone, which is one solver.
+void keep_one(const Given& given, const std::string& option, std::vector<std::string>& names) {
+  if (given.contains(option) && names.size() > 1)
+    throw std::invalid_argument("--" + option + ": '" + joined(names, ",") +
+                                "' are several; name one, for the parts of --advance");
+  names.resize(1);
+}
+
+RunOptions parse_record_options(Given given) {
+  const auto at = given.extract("at");
+  if (at.empty()) throw std::invalid_argument("--at: is required: the steps to record, such as 100,200,300");
+  RunOptions options = parse_run_options(given);
+  keep_one(given, "partitioner", options.partitioners);
+  keep_one(given, "refiner", options.refiners);
+  options.solvers = {options.advance};
+  options.at = parse_integers("at", at.mapped(), {0, std::numeric_limits<int>::max() - 1});
+  options.steps = options.at.back() + 1;
+  return options;
+}
+
+std::string file_name(const RunOptions& options, int step) {
+  char number[16];
+  std::snprintf(number, sizeof number, "%06d", step);
+  return options.scene + "_step" + number + ".h5";
+}
+
+std::vector<std::string> files_of(const RunOptions& options) {
+  std::vector<std::string> files = {"steps.csv"};
+  for (const int step : options.at) files.push_back(file_name(options, step));
+  return files;
+}
+
+ProblemFile problem_file_of(const OdeWorld& world, const StepProblem& problem, const StepRecord& common,
+                            const RunOptions& options) {
+  ProblemFile file;
+  file.problem = problem;
+  file.scene = common.scene;
+  file.step = common.step;
+  file.seed = common.seed;
+  file.friction_model = common.friction;
+  file.erp = options.extract.erp;
+  file.cfm = options.extract.cfm;
+  for (int i = 0; i < world.body_count(); ++i) {
+    const BodyState state = world.state(i);
+    file.position.insert(file.position.end(), state.position_m.begin(), state.position_m.end());
+    file.orientation.insert(file.orientation.end(), state.orientation.begin(), state.orientation.end());
+  }
+  file.shapes = extract_shapes(world);
+  return file;
+}
+
+int record(const Given& given, const std::vector<std::string>& argv) {
+  const RunOptions options = parse_record_options(given);
+  check_output_directory(options.out, options.force, files_of(options));
+  const std::filesystem::path out = options.out;
+  const auto write = [&](const OdeWorld& world, const StepProblem& problem, StepRecord& common) {
+    common.problem_file = file_name(options, common.step);
+    write_problem_file(out / common.problem_file, problem_file_of(world, problem, common, options));
+  };
+  return simulate("record", argv, options, write);
+}
+
+}  // namespace
+
+std::function<int()> declare_record(CLI::App& app, const std::vector<std::string>& argv) {
+  const auto given = std::make_shared<Given>();
+  app.add_option_function<std::string>(
+         "--at", [given](const std::string& text) { (*given)["at"] = text; }, "steps to record")
+      ->type_name("N,N,...");
+  declare_run_options(app, *given, has_option);
+  declare_scene_options(app, *given);
+  return [given, argv] { return record(*given, argv); };
+}
+
+}  // namespace cleave

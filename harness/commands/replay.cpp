@@ -1,0 +1,195 @@
+// cleave replay: solves recorded problems with every combination.
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <string_view>
+
+#include "harness/combination.h"
+#include "harness/commands/command.h"
+#include "harness/commands/manifested_work.h"
+#include "harness/commands/run_command_line.h"
+#include "harness/csv_recorder.h"
+#include "harness/nearest_name.h"
+#include "harness/options.h"
+#include "harness/output_directory.h"
+#include "harness/problem_file.h"
+#include "harness/progress.h"
+#include "harness/step_columns.h"
+#include "harness/stopwatch.h"
+
+namespace cleave {
+namespace {
+
+namespace fs = std::filesystem;
+using Given = std::map<std::string, std::string>;
+
+// What concerns combinations; everything about the step itself comes from the files.
+bool has_option(const std::string& name) {
+  constexpr std::array<std::string_view, 20> with = {"partitioner",
+                                                     "refiner",
+                                                     "solver",
+                                                     "strategy",
+                                                     "kernel",
+                                                     "sweeps",
+                                                     "repeats",
+                                                     "threads",
+                                                     "out",
+                                                     "force",
+                                                     "max-bodies",
+                                                     "tau-mr",
+                                                     "tau-mix",
+                                                     "max-growth",
+                                                     "edge-weight",
+                                                     "degree",
+                                                     "as-printed",
+                                                     "degree-scope",
+                                                     "skip-small-islands",
+                                                     "reuse-analysis"};
+  return std::ranges::find(with, name) != with.end();
+}
+
+struct ReplayOptions {
+  RunOptions solve;
+  std::vector<std::string> files;
+  bool cold = false;
+  bool write_solutions = false;
+};
+
+std::vector<OptionValue> values_of(const ReplayOptions& options) {
+  std::vector<OptionValue> values;
+  for (const OptionValue& value : option_values(options.solve))
+    if (has_option(value.name)) values.push_back(value);
+  const auto flag = [](bool set) { return std::string(set ? "true" : "false"); };
+  values.push_back({"cold", OptionSpec::Kind::flag, flag(options.cold)});
+  values.push_back({"write-solutions", OptionSpec::Kind::flag, flag(options.write_solutions)});
+  values.push_back({"files", OptionSpec::Kind::text, joined(options.files, " ")});
+  return values;
+}
+
+// The files of --write-solutions must not meet each other or replace what is replayed.
+void check_names(const ReplayOptions& options) {
+  std::set<std::string> names;
+  for (const std::string& file : options.files) {
+    const fs::path copy = fs::path(options.solve.out) / fs::path(file).filename();
+    std::error_code error;
+    if (fs::equivalent(file, copy, error))
+      throw std::invalid_argument("--out: the copy of " + file + " would replace it; name another directory");
+    if (!names.insert(copy.filename()).second)
+      throw std::invalid_argument(file + ": another file of this name is replayed; " + copy.string() +
+                                  " cannot hold both");
+  }
+}
+
+std::vector<std::string> files_written(const ReplayOptions& options) {
+  std::vector<std::string> files = {"steps.csv"};
+  if (!options.write_solutions) return files;
+  for (const std::string& file : options.files) files.push_back(fs::path(file).filename());
+  return files;
+}
+
+StepRecord columns_of(const ProblemFile& file, const std::string& path, const ReplayOptions& options) {
+  StepRecord row = run_columns(options.solve);
+  row.run_id = run_id(values_of(options));
+  row.scene = file.scene;
+  row.seed = file.seed;
+  row.step = file.step;
+  row.time_s = file.step * file.problem.h_s;
+  row.friction = file.friction_model;
+  row.problem_file = path;
+  set_problem_columns(file.problem, row);
+  return row;
+}
+
+void store(const StepRecord& row, const Outcome& outcome, const RunOptions& options, ProblemFile& file) {
+  const std::string label = combination_label(row.partitioner, row.refiner, row.solver);
+  file.solutions[label] = {row.solver,
+                           row.strategy,
+                           row.kernel,
+                           row.partitioner,
+                           row.refiner,
+                           outcome.verdict.residual_m_per_s,
+                           outcome.solution.impulse,
+                           outcome.verdict.velocity};
+  file.partitions.erase(label);
+  if (!outcome.part_of_body.empty())
+    file.partitions[label] = {row.partitioner, row.refiner, options, outcome.part_of_body};
+}
+
+class Replay {
+ public:
+  // Makes every solver, partitioner and refiner.
+  explicit Replay(const ReplayOptions& options)
+      : options_(options), combinations_(make_combinations(options.solve)) {}
+
+  RunSummary run(const fs::path& out) {
+    Stopwatch watch;
+    CsvRecorder recorder(out / "steps.csv");
+    ProgressLine line("replay");
+    const int total = static_cast<int>(options_.files.size());
+    for (int i = 0; i < total && !stop_requested(); ++i) {
+      solve(options_.files[i], out, recorder);
+      line.update(i + 1, total);
+    }
+    summary_.wall_s = watch.lap_ms() / 1000;
+    summary_.interrupted = stop_requested();
+    return summary_;
+  }
+
+ private:
+  void solve(const std::string& path, const fs::path& out, CsvRecorder& recorder) {
+    ProblemFile file = read_problem_file(path);
+    std::vector<StepRecord> rows(combinations_.size(), columns_of(file, path, options_));
+    StepProblem problem = file.problem;
+    if (options_.cold) std::ranges::fill(problem.warm_impulse, 0.0);
+    const std::vector<Outcome> outcomes = measure_all(combinations_, problem, summary_.measured_steps, rows);
+    if (options_.write_solutions) {
+      for (std::size_t i = 0; i < rows.size(); ++i) store(rows[i], outcomes[i], options_.solve, file);
+      write_problem_file(out / fs::path(path).filename(), file);
+    }
+    for (const StepRecord& row : rows) summary_.add(row);
+    ++summary_.measured_steps;
+    if (rows.front().contacts > 0) ++summary_.measured_with_contacts;
+    recorder.write(rows);
+  }
+
+  const ReplayOptions& options_;
+  std::vector<Combination> combinations_;
+  RunSummary summary_;
+};
+
+int replay(const ReplayOptions& options, const std::vector<std::string>& argv) {
+  if (options.files.empty()) throw std::invalid_argument("FILES: at least one problem file is required");
+  for (const std::string& file : options.files) read_problem_file(file);  // before anything is created
+  if (options.write_solutions) check_names(options);
+  check_output_directory(options.solve.out, options.solve.force, files_written(options));
+  omp_set_num_threads(options.solve.threads);
+  Replay work(options);
+  const fs::path out = create_output_directory(options.solve.out);
+  Manifest manifest(out / "manifest.json", "replay", argv, values_of(options));
+  return do_manifested_work(manifest, [&] { return work.run(out); });
+}
+
+}  // namespace
+
+std::function<int()> declare_replay(CLI::App& app, const std::vector<std::string>& argv) {
+  struct State {
+    Given given;
+    ReplayOptions options;
+  };
+  const auto state = std::make_shared<State>();
+  app.add_option("files", state->options.files, "problem files that cleave record wrote")->type_name("FILES");
+  declare_run_options(app, state->given, has_option);
+  app.add_flag("--cold", state->options.cold, "start from zero impulses in place of the recorded ones");
+  app.add_flag("--write-solutions", state->options.write_solutions,
+               "copy each file to --out with every solution and partition in it");
+  return [state, argv] {
+    state->options.solve = parse_solve_options(state->given);
+    return replay(state->options, argv);
+  };
+}
+
+}  // namespace cleave

@@ -1,0 +1,58 @@
+// cleave verify: checks what is stored from the files alone.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+
+#include "harness/commands/command.h"
+#include "harness/commands/verify_checks.h"
+#include "harness/commands/verify_rows.h"
+
+namespace cleave {
+namespace {
+
+namespace fs = std::filesystem;
+
+void verify_file(const fs::path& path, CheckList& list) {
+  check_problem_file(path, read_problem_file(path), list);
+}
+
+void verify_directory(const fs::path& directory, CheckList& list) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory))
+    if (entry.path().extension() == ".h5" && entry.path().filename() != "motion.h5")
+      files.push_back(entry.path());
+  std::ranges::sort(files);
+  const bool has_table = fs::exists(directory / "steps.csv");
+  if (files.empty() && !has_table)
+    throw std::invalid_argument(directory.string() + ": holds neither problem files (.h5) nor steps.csv");
+  for (const fs::path& file : files) verify_file(file, list);
+  if (has_table) check_steps_table(directory, list);
+}
+
+int verify(const std::vector<std::string>& paths) {
+  if (paths.empty()) throw std::invalid_argument("PATHS: problem files or output directories are required");
+  CheckList list;
+  for (const std::string& path : paths) {
+    if (fs::is_directory(path)) {
+      verify_directory(path, list);
+    } else {
+      verify_file(path, list);
+    }
+  }
+  std::fflush(stdout);
+  std::fprintf(stderr, "%d checks, %d failed\n", list.checks(), list.failures());
+  return list.failures() == 0 ? kExitOk : kExitVerifyFailed;
+}
+
+}  // namespace
+
+std::function<int()> declare_verify(CLI::App& app, const std::vector<std::string>&) {
+  const auto paths = std::make_shared<std::vector<std::string>>();
+  app.add_option("paths", *paths, "problem files, or directories that hold them or steps.csv")
+      ->type_name("PATHS");
+  return [paths] { return verify(*paths); };
+}
+
+}  // namespace cleave

@@ -1,0 +1,127 @@
+#include "harness/commands/verify_checks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numeric>
+
+#include "harness/hash.h"
+#include "harness/nearest_name.h"
+#include "harness/options_text.h"
+#include "harness/problem_graph.h"
+#include "harness/splitter.h"
+#include "harness/step_columns.h"
+#include "partition/registry.h"
+#include "solver/residual.h"
+
+namespace cleave {
+namespace {
+
+// Another compiler may round the judge's sums differently: far below the limit that decides.
+constexpr double kResidualTolerance_m_per_s = 1e-12;
+constexpr double kResidualRelativeTolerance = 1e-6;
+
+void check_solution_label(const std::string& label, const StoredSolution& solution,
+                          const std::string& subject, CheckList& list) {
+  const std::string expected = combination_label(solution.partitioner, solution.refiner, solution.solver);
+  list.add(label == expected, subject, "label of partitioner, refiner and solver " + expected);
+}
+
+void check_solution(const StepProblem& problem, const StoredSolution& solution, const std::string& subject,
+                    CheckList& list) {
+  const ResidualReport verdict = judge(problem, solution.impulse);
+  list.add(same_residual(solution.residual_m_per_s, verdict.residual_m_per_s), subject,
+           "residual " + number_text(verdict.residual_m_per_s) + " m/s, stored " +
+               number_text(solution.residual_m_per_s));
+
+  // Impulses that are no numbers have no velocity to compare with; their residual says so above.
+  if (std::isnan(verdict.residual_m_per_s)) return;
+  const double difference = largest_difference(solution.velocity, verdict.velocity);
+  list.add(difference <= verdict.limit_m_per_s, subject,
+           "velocity is v0 + M^-1 J^T impulse to " + number_text(difference) + " m/s");
+}
+
+bool check_part_ids(const StoredPartition& partition, const std::string& subject, CheckList& list) {
+  const std::vector<int>& parts = partition.part_of_body;
+  const int bad = find_bad_part_id(parts);
+  list.add(bad < 0, subject,
+           bad < 0 ? "part ids"
+                   : "part_of_body[" + std::to_string(bad) + "] = " + std::to_string(parts[bad]) +
+                         ", allowed: 0 to " + std::to_string(parts.size() - 1));
+  return bad < 0;
+}
+
+std::string metrics_text(const PartitionMetrics& metrics) {
+  return std::to_string(metrics.parts) + " parts, " + std::to_string(metrics.cut_pairs) + " cut pairs, " +
+         std::to_string(metrics.interface_rows) + " interface rows";
+}
+
+void check_split(const StepProblem& problem, const StoredPartition& partition, const std::string& subject,
+                 CheckList& list) {
+  const auto known = [](const std::string& name, const std::vector<std::string>& names) {
+    return std::ranges::find(names, name) != names.end();
+  };
+  const std::string counted = metrics_text(measure_partition(body_graph_of(problem), partition.part_of_body));
+  if (!known(partition.partitioner, names_of(partitioners())) ||
+      !known(partition.refiner, names_of(refiners()))) {
+    list.add(true, subject,
+             counted + "; not split again: " + partition.partitioner + "+" + partition.refiner +
+                 " is not one of ours");
+    return;
+  }
+  const Splitter splitter(partition.partitioner, partition.refiner, partition.options);
+  const std::vector<int> again = splitter.run(problem).parts.part_of_body;
+  const int moved = static_cast<int>(std::inner_product(
+      again.begin(), again.end(), partition.part_of_body.begin(), 0, std::plus<>(), std::not_equal_to<>()));
+  list.add(
+      moved == 0, subject,
+      counted + "; split again, " + (moved == 0 ? "the same" : std::to_string(moved) + " bodies differ"));
+}
+
+void check_partition(const std::string& label, const StepProblem& problem, const StoredPartition& partition,
+                     const std::string& subject, CheckList& list) {
+  const std::string pair = partition.partitioner + "+" + partition.refiner;
+  list.add(label == pair || label.starts_with(pair + "+"), subject,
+           "label of partitioner and refiner " + pair);
+  if (check_part_ids(partition, subject, list)) check_split(problem, partition, subject, list);
+}
+
+}  // namespace
+
+void CheckList::add(bool passed, const std::string& subject, const std::string& text) {
+  ++checks_;
+  failures_ += passed ? 0 : 1;
+  std::printf("%s  %s: %s\n", passed ? "ok  " : "FAIL", subject.c_str(), text.c_str());
+}
+
+bool same_residual(double stored_m_per_s, double found_m_per_s) {
+  if (std::isnan(stored_m_per_s) || std::isnan(found_m_per_s))
+    return std::isnan(stored_m_per_s) && std::isnan(found_m_per_s);
+  return std::abs(stored_m_per_s - found_m_per_s) <=
+         kResidualTolerance_m_per_s + kResidualRelativeTolerance * std::abs(found_m_per_s);
+}
+
+int find_bad_part_id(const std::vector<int>& part_of_body) {
+  const int bodies = static_cast<int>(part_of_body.size());
+  const auto bad =
+      std::ranges::find_if(part_of_body, [bodies](int part) { return part < 0 || part >= bodies; });
+  return bad == part_of_body.end() ? -1 : static_cast<int>(bad - part_of_body.begin());
+}
+
+void check_problem_file(const std::filesystem::path& path, const ProblemFile& file, CheckList& list) {
+  const StepProblem& problem = file.problem;
+  list.add(true, path.string(),
+           "problem of " + file.scene + " step " + std::to_string(file.step) + ": " +
+               std::to_string(problem.body_count()) + " bodies, " + std::to_string(problem.row_count()) +
+               " rows, hash " + hex(problem_hash(problem)));
+  for (const auto& [label, solution] : file.solutions) {
+    const std::string subject = path.string() + " solution/" + label;
+    check_solution_label(label, solution, subject, list);
+    check_solution(problem, solution, subject, list);
+  }
+  for (const auto& [label, partition] : file.partitions)
+    check_partition(label, problem, partition, path.string() + " partition/" + label, list);
+}
+
+}  // namespace cleave

@@ -1,0 +1,35 @@
+// What `cleave verify` finds out from one problem file alone.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "harness/problem_file.h"
+
+namespace cleave {
+
+// Prints every check as one line on stdout, "ok    subject: text" or "FAIL  subject: text", and counts them.
+class CheckList {
+ public:
+  void add(bool passed, const std::string& subject, const std::string& text);
+  int checks() const { return checks_; }
+  int failures() const { return failures_; }
+
+ private:
+  int checks_ = 0;
+  int failures_ = 0;
+};
+
+// The judge's numbers agree: equal up to the last digits, or both no numbers.
+bool same_residual(double stored_m_per_s, double found_m_per_s);
+
+// Index of the first id outside [0, n), or -1.
+int find_bad_part_id(const std::vector<int>& part_of_body);
+
+// Of every solution: its label, its residual judged anew against the stored one, its velocity against
+// v0 + M^-1 J^T impulse. Of every partition: its label, its part ids, and the same parts when the stored
+// partitioner and refiner split the problem again with the stored options.
+void check_problem_file(const std::filesystem::path& path, const ProblemFile& file, CheckList& list);
+
+}  // namespace cleave

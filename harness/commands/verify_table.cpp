@@ -1,0 +1,60 @@
+#include "harness/commands/verify_table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <limits>
+#include <stdexcept>
+
+namespace cleave {
+
+std::vector<std::string> split_csv_line(const std::string& line) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const bool doubled = quoted && line[i] == '"' && i + 1 < line.size() && line[i + 1] == '"';
+    if (doubled) {
+      cells.back() += line[++i];
+    } else if (line[i] == '"') {
+      quoted = !quoted;
+    } else if (line[i] == ',' && !quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += line[i];
+    }
+  }
+  return cells;
+}
+
+StepsTable::StepsTable(const std::filesystem::path& path) : file_(path.string()) {
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  if (!std::getline(file, line)) throw std::invalid_argument(file_ + ": cannot be read or has no header");
+  header_ = split_csv_line(line);
+  while (std::getline(file, line)) {
+    rows_.push_back(split_csv_line(line));
+    const std::string place = file_ + ": line " + std::to_string(rows_.size() + 1);
+    if (rows_.back().size() != header_.size())
+      throw std::invalid_argument(place + " has " + std::to_string(rows_.back().size()) +
+                                  " cells, allowed: " + std::to_string(header_.size()));
+    if (file.eof()) throw std::invalid_argument(place + " has no end: the file is truncated");
+  }
+}
+
+const std::string& StepsTable::cell(std::size_t row, const std::string& column) const {
+  const auto found = std::ranges::find(header_, column);
+  if (found == header_.end()) throw std::invalid_argument(file_ + ": column " + column + " is missing");
+  return rows_[row][found - header_.begin()];
+}
+
+double StepsTable::number(std::size_t row, const std::string& column) const {
+  const std::string& text = cell(row, column);
+  double value = std::numeric_limits<double>::quiet_NaN();
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw std::invalid_argument(file_ + ": line " + std::to_string(row + 2) + ": " + column + " = '" + text +
+                                "', allowed: a number");
+  return value;
+}
+
+}  // namespace cleave

@@ -1,0 +1,30 @@
+// Reads steps.csv back.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace cleave {
+
+class StepsTable {
+ public:
+  // Throws std::invalid_argument naming the file, the line and what is wrong: no header, a line with another
+  // number of cells than the header, a last line without its end.
+  explicit StepsTable(const std::filesystem::path& path);
+
+  std::size_t row_count() const { return rows_.size(); }
+  // Throws std::invalid_argument naming the file and the column when there is none of this name.
+  const std::string& cell(std::size_t row, const std::string& column) const;
+  double number(std::size_t row, const std::string& column) const;
+
+ private:
+  std::string file_;
+  std::vector<std::string> header_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+// The cells of one line without its end, unquoted.
+std::vector<std::string> split_csv_line(const std::string& line);
+
+}  // namespace cleave

@@ -1,0 +1,59 @@
+// How the numbers of our arrays lie in memory and in a file. In files everything is little endian.
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "solver/step_problem.h"
+
+namespace cleave {
+
+using Hdf5Shape = std::vector<std::size_t>;
+
+// An element type. HDF5's type ids are known only at run time, hence functions.
+struct Hdf5Element {
+  hid_t (*memory)();
+  hid_t (*file)();
+  H5T_class_t type_class;
+  std::size_t size;
+  bool is_signed;
+  const char* name;
+};
+
+inline constexpr Hdf5Element kHdf5Double = {
+    [] { return H5T_NATIVE_DOUBLE; }, [] { return H5T_IEEE_F64LE; }, H5T_FLOAT, 8, true, "64-bit float"};
+inline constexpr Hdf5Element kHdf5Float = {
+    [] { return H5T_NATIVE_FLOAT; }, [] { return H5T_IEEE_F32LE; }, H5T_FLOAT, 4, true, "32-bit float"};
+inline constexpr Hdf5Element kHdf5Int = {
+    [] { return H5T_NATIVE_INT; }, [] { return H5T_STD_I32LE; }, H5T_INTEGER, 4, true,
+    "32-bit signed integer"};
+inline constexpr Hdf5Element kHdf5Short = {
+    [] { return H5T_NATIVE_USHORT; }, [] { return H5T_STD_U16LE; }, H5T_INTEGER, 2, false,
+    "16-bit unsigned integer"};
+inline constexpr Hdf5Element kHdf5Byte = {
+    [] { return H5T_NATIVE_UCHAR; }, [] { return H5T_STD_U8LE; }, H5T_INTEGER, 1, false,
+    "8-bit unsigned integer"};
+
+constexpr const Hdf5Element& hdf5_element(double) { return kHdf5Double; }
+constexpr const Hdf5Element& hdf5_element(float) { return kHdf5Float; }
+constexpr const Hdf5Element& hdf5_element(std::uint16_t) { return kHdf5Short; }
+constexpr const Hdf5Element& hdf5_element(int) { return kHdf5Int; }
+constexpr const Hdf5Element& hdf5_element(std::uint8_t) { return kHdf5Byte; }
+constexpr const Hdf5Element& hdf5_element(RowKind) { return kHdf5Byte; }
+
+// Keeps the library from printing; errors are ours to tell.
+inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+// "(10, 12)"
+inline std::string hdf5_shape_text(std::span<const std::size_t> shape) {
+  std::string text = "(";
+  for (std::size_t i = 0; i < shape.size(); ++i) text += (i == 0 ? "" : ", ") + std::to_string(shape[i]);
+  return text + ")";
+}
+
+}  // namespace cleave

@@ -1,0 +1,179 @@
+"""Reads what `cleave run` writes into an output directory: steps.csv and manifest.json.
+
+Every error is a ResultError whose one line names the file, and the column or line where there is one.
+"""
+import argparse
+import csv
+import dataclasses
+import io
+import json
+import pathlib
+
+SCENES = ("chain_drop", "log_tower", "rock_pile", "large_rock_pile")
+PARTITIONERS = ("mindp", "maxdp", "bfs", "mr", "mix")
+REFINERS = ("none", "kl", "fm")
+NO_PARTITIONER = "-"  # of a solver that works on the whole system
+PAPER_TABLE1 = pathlib.Path(__file__).resolve().parent / "paper_table1.csv"
+
+
+class ResultError(Exception):
+    """Results that cannot be read; the text is for the user."""
+
+
+class CommandLine(argparse.ArgumentParser):
+    """Wrong options are bad input: exit code 1, as in the program."""
+
+    def error(self, message):
+        self.exit(1, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def counted(number, noun):
+    """'1 thread', '2 threads'"""
+    return f"{number} {noun}" + ("" if str(number) == "1" else "s")
+
+
+class Row(dict):
+    """One line of steps.csv: text by column, and where it stands."""
+
+    def __init__(self, values, path, line):
+        super().__init__(values)
+        self.path = path
+        self.line = line
+
+    def number(self, column):
+        """The value of a column as float; nan and inf are numbers here."""
+        try:
+            return float(self[column])
+        except ValueError:
+            raise ResultError(f"{self.path}, line {self.line}: column {column} is '{self[column]}', "
+                              "expected a number") from None
+
+    def integer(self, column):
+        try:
+            return int(self[column])
+        except ValueError:
+            raise ResultError(f"{self.path}, line {self.line}: column {column} is '{self[column]}', "
+                              "expected a whole number") from None
+
+
+@dataclasses.dataclass
+class Run:
+    """One output directory."""
+
+    steps_path: pathlib.Path
+    rows: list
+    manifest: dict  # empty where there is no manifest.json
+    notes: list  # what a reader of the numbers has to know, one line each
+
+
+def find_steps_files(paths):
+    """The steps.csv of every path: a file, an output directory, or a directory of output directories."""
+    found = []
+    for path in map(pathlib.Path, paths):
+        if path.is_file():
+            here = [path]
+        elif path.is_dir():
+            here = [path / "steps.csv"] if (path /
+                                            "steps.csv").is_file() else sorted(path.glob("*/steps.csv"))
+        else:
+            raise ResultError(f"{path}: no such file or directory")
+        if not here:
+            raise ResultError(f"{path}: neither steps.csv nor */steps.csv in it")
+        found += [file for file in here if file not in found]
+    return found
+
+
+def load_steps(path, required=()):
+    """Rows of one steps.csv and notes about it. A last line that was not finished is left out and noted."""
+    path = pathlib.Path(path)
+    try:
+        text = path.read_bytes().decode("utf-8")
+    except OSError as error:
+        raise ResultError(f"{path}: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise ResultError(f"{path}: not a text file") from None
+    if not text:
+        raise ResultError(f"{path}: empty file, not even a header")
+    notes = []
+    complete, newline, rest = text.rpartition("\n")
+    if rest:
+        notes.append(f"{path}: the last line was not finished and is left out")
+    if not newline:
+        raise ResultError(f"{path}: the header line was not finished")
+
+    reader = csv.reader(io.StringIO(complete + newline))
+    header, rows = None, []
+    try:
+        for cells in reader:
+            if not cells or (header is None and cells[0].startswith("#")):
+                continue
+            if header is None:
+                header = cells
+                _check_header(path, header, required)
+            elif len(cells) != len(header):
+                raise ResultError(
+                    f"{path}, line {reader.line_num}: {len(cells)} values, the header has {len(header)}")
+            else:
+                rows.append(Row(zip(header, cells), path, reader.line_num))
+    except csv.Error as error:
+        raise ResultError(f"{path}, line {reader.line_num}: {error}") from None
+    if header is None:
+        raise ResultError(f"{path}: no header line")
+    if not rows:
+        notes.append(f"{path}: no rows")
+    return rows, notes
+
+
+def _check_header(path, header, required):
+    missing = [column for column in required if column not in header]
+    if missing:
+        raise ResultError(f"{path}: missing column {', '.join(missing)}")
+    twice = sorted({column for column in header if header.count(column) > 1})
+    if twice:
+        raise ResultError(f"{path}: column {', '.join(twice)} stands twice in the header")
+
+
+def load_manifest(directory):
+    """manifest.json of an output directory; an empty dictionary where there is none."""
+    path = pathlib.Path(directory) / "manifest.json"
+    if not path.exists():
+        return {}
+    try:
+        manifest = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ResultError(f"{path}: {error}") from None
+    if not isinstance(manifest, dict):
+        raise ResultError(f"{path}: expected an object")
+    return manifest
+
+
+def load_runs(paths, required=()):
+    """All runs below the given files and directories."""
+    runs = []
+    for steps_path in find_steps_files(paths):
+        rows, notes = load_steps(steps_path, required)
+        manifest = load_manifest(steps_path.parent)
+        if manifest.get("state", "complete") != "complete":
+            notes.append(
+                f"{steps_path}: not all steps are there, the state of the run is {manifest['state']}")
+        runs.append(Run(steps_path, rows, manifest, notes))
+    return runs
+
+
+def load_paper_table1(path=PAPER_TABLE1):
+    """(scene, partitioner, refiner) -> (t_s_ms, t_pr_ms) as the paper printed them."""
+    rows, _ = load_steps(path, ("scene", "partitioner", "refiner", "t_s_ms", "t_pr_ms"))
+    return {(row["scene"], row["partitioner"], row["refiner"]): (row.number("t_s_ms"), row.number("t_pr_ms"))
+            for row in rows}
+
+
+def machine(manifest):
+    """One line about where a run was made: processor, cores, threads, commit."""
+    if not manifest:
+        return "unknown machine (no manifest.json)"
+    build, place = manifest.get("build", {}), manifest.get("machine", {})
+    changed = " with local changes" if build.get("git_dirty") == "true" else ""
+    return (
+        f"{place.get('cpu_model', 'unknown processor')}, {counted(place.get('cores', 'unknown'), 'core')}, "
+        f"{counted(manifest.get('options', {}).get('threads', 'unknown'), 'thread')}, "
+        f"commit {build.get('git_hash', 'unknown')[:10]}{changed}")

@@ -1,0 +1,87 @@
+"""What a better kernel does to the value of partitioning: t_s of mindp + none over mix + fm under each."""
+import pandas
+
+from figures import solver_groups, style
+from figures.choose import provenance
+from figures.spread import interval, resampled_means
+from figures.tree import NoData
+
+KERNELS = ("schur-rows", "schur-bodies")
+WORSE, BETTER = ("mindp", "none"), ("mix", "fm")
+LOOKS = {
+    "schur-rows": {
+        "marker": "s",
+        "color": style.INK
+    },
+    "schur-bodies": {
+        "marker": "o",
+        "color": style.MUTED
+    }
+}
+
+
+def strategy_of(solver, kernel):
+    """The strategy a solver was asked for: 'pivot:schur-rows' and 'schur' are pivot."""
+    name = solver.removesuffix(":" + kernel)
+    return "pivot" if name == "schur" else name
+
+
+def ratios(parts):
+    """{(strategy, kernel): (ratio, low, high, steps)} where both combinations were measured."""
+    rows = pandas.concat([part.ok for part in parts], ignore_index=True)
+    if not {"kernel", "t_s_ms"} <= set(rows.columns):
+        raise NoData("column kernel or t_s_ms is missing")
+    found = {}
+    for (solver, kernel), frame in rows[rows["kernel"].isin(KERNELS)].groupby(["solver", "kernel"]):
+        index = ["seed", "step"] if "seed" in frame else ["step"]
+        times = frame.pivot_table("t_s_ms", index, ["partitioner", "refiner"])
+        if not {WORSE, BETTER} <= set(times.columns):
+            continue
+        times = times[[WORSE, BETTER]].dropna().to_numpy()
+        times = times[(times > 0).all(axis=1)]
+        if len(times):
+            worse, better = resampled_means(times).T
+            ratio = times[:, 0].mean() / times[:, 1].mean()
+            found[strategy_of(solver, kernel), kernel] = (ratio, *interval(worse / better), len(times))
+    return found
+
+
+def draw(data):
+    bars = []
+    used = {}
+    for name, parts in solver_groups.groups(data.blocks).items():
+        found = ratios(parts)
+        for strategy in sorted({key[0] for key in found}):
+            pair = [found.get((strategy, kernel)) for kernel in KERNELS]
+            if all(pair):
+                bars.append((f"{name}\n{strategy}, {pair[0][3]} steps", pair))
+                used[name] = parts
+    if not bars:
+        raise NoData(
+            f"nowhere were both {' '.join(WORSE)} and {' '.join(BETTER)} solved under {KERNELS[0]} and "
+            f"{KERNELS[1]} with one strategy and setup")
+    figure, ax = style.pyplot.subplots(figsize=(style.WIDTH_IN, 0.6 * len(bars) + 1.0))
+    for y, (_, pair) in enumerate(bars):
+        for shift, kernel, (ratio, low, high, _) in zip((-0.12, 0.12), KERNELS, pair):
+            ax.hlines(y + shift, low, high, color=LOOKS[kernel]["color"], linewidth=1.4)
+            ax.plot(ratio,
+                    y + shift,
+                    linestyle="none",
+                    markersize=6,
+                    **LOOKS[kernel],
+                    label=kernel if y == 0 else None)
+            ax.annotate(f"{ratio:.2f}", (max(high, ratio), y + shift), (5, 0),
+                        textcoords="offset points",
+                        va="center")
+    ax.axvline(1, color=style.MUTED, linewidth=0.8, linestyle="--")
+    ax.set_yticks(range(len(bars)), [name for name, _ in bars])
+    ax.set_ylim(len(bars) - 0.5, -0.5)
+    ax.tick_params(axis="y", length=0)
+    ax.grid(axis="y", visible=False)
+    ax.margins(x=0.12)
+    ax.set_xlabel(f"$t_s$ of {' + '.join(WORSE)} over $t_s$ of {' + '.join(BETTER)}")
+    style.legend_above(figure, ax.get_legend_handles_labels()[0], columns=2)
+    return figure, (
+        f"How much partitioning is worth under two kernels: mean t_s of {' + '.join(WORSE)} over that of "
+        f"{' + '.join(BETTER)} on the same steps; lines are 95 % intervals. At 1 (dashed) the partition "
+        f"does not matter. " + provenance(used))

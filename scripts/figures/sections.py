@@ -1,0 +1,140 @@
+"""The sections of the report, in its order."""
+import html
+import importlib
+import pathlib
+
+from cleave_results import ResultError, load_paper_table1, machine
+from figures import page, style
+from figures.choose import step_count, title
+from figures.registry import FIGURES
+from figures.table_html import SIGNS
+from figures.tables import lowest_totals, scene_tables, table1_body, verdicts_body
+from figures.tree import NoData
+from figures.verdicts import judge_all
+
+PAPER, BEYOND, RUNS = "The paper", "Beyond the paper", "The runs"
+RENDERED = ((
+    "figure1", "Figure 1: the scenes and their constraint graphs",
+    "Bodies of Chain Drop, Rock Pile and Log Tower with the graph over them: nodes blue, edges red."),
+            ("figure2", "Figure 2: one frame of Rock Pile, split in fifteen ways",
+             "Bodies coloured by part, edges between parts drawn; partitioners across, refiners down."))
+SCRIPTS = pathlib.Path(__file__).resolve().parents[1]
+
+
+def build(data, directory):
+    """(sections, gaps): files go to directory/figures; gaps are (anchor, heading, reason)."""
+    files = directory / "figures"
+    files.mkdir(exist_ok=True)
+    gaps = []
+    tables, faults = scene_tables(data)
+    verdicts = judge_all(data, load_paper_table1())
+    sections = [_rendered(files, *entry, gaps) for entry in RENDERED]
+    sections += [_figure(data, files, figure, PAPER, gaps) for figure in FIGURES if figure.paper]
+    sections += [
+        _with_gap("table1", "Table 1: mean times beside the paper's", PAPER, gaps,
+                  lambda: table1_body(data, tables, faults, files)),
+        page.Section("verdicts", "Verdicts: what of the paper holds here", verdicts_body(verdicts, files),
+                     PAPER)
+    ]
+    sections += [_figure(data, files, figure, BEYOND, gaps) for figure in FIGURES if not figure.paper]
+    sections += [_replay(directory, files, gaps), _runs(data), _messages(data)]
+    return [_summary(data, tables, verdicts, gaps), *sections], gaps
+
+
+def _with_gap(anchor, heading, group, gaps, make):
+    """A section, or its place with the reason why it is not there."""
+    try:
+        body = make()
+    except (NoData, ResultError) as reason:
+        gaps.append((anchor, heading, str(reason)))
+        body = page.gap(reason)
+    return page.Section(anchor, heading, body, group)
+
+
+def _figure(data, files, figure, group, gaps):
+
+    def make():
+        drawn, caption = figure.draw(data)
+        pdf, png = style.save(drawn, files, figure.name)
+        return page.picture(png, caption, [("PDF", pdf, "application/pdf")])
+
+    for ending in ("pdf", "png"):  # of an earlier report, which a gap must not leave behind
+        (files / f"{figure.name}.{ending}").unlink(missing_ok=True)
+    return _with_gap(figure.name.replace("_", "-"), figure.title, group, gaps, make)
+
+
+def _rendered(files, name, heading, caption, gaps):
+    """Figures that scripts/render_figures has made before."""
+
+    def make():
+        png, pdf, text = (files / f"{name}.{ending}" for ending in ("png", "pdf", "txt"))
+        if not png.is_file():
+            raise NoData("no motion recorded, or scripts/render_figures has not been run")
+        downloads = [("PDF", pdf, "application/pdf")] if pdf.is_file() else []
+        told = text.read_text(encoding="utf-8").strip() if text.is_file() else caption
+        return page.picture(png, told, downloads)
+
+    return _with_gap(name, heading, PAPER, gaps, make)
+
+
+def _replay(directory, files, gaps):
+
+    def make():
+        fragment = _viewer(directory)
+        strips = [
+            page.picture(png, "One picture every so many steps, from the recorded motion.")
+            for png in sorted(files.glob("film*strip*.png"))
+        ]
+        if not fragment and not strips:
+            raise NoData("no motion recorded; cleave run --record-motion writes it")
+        return fragment + "".join(strips)
+
+    return _with_gap("replay", "Replay of a recorded run", RUNS, gaps, make)
+
+
+def _viewer(directory):
+    """HTML of the viewer; empty without a recorded motion."""
+    if not (SCRIPTS / "viewer.py").is_file():
+        return ""
+    viewer = importlib.import_module("viewer")
+    fragment = viewer.viewer_section(directory)
+    return "" if fragment == viewer.NO_MOTION else fragment
+
+
+def _summary(data, tables, verdicts, gaps):
+    rows = [experiment.rows["status"] for experiment in data.tree.experiments]
+    failed = sum((status != "ok").sum() for status in rows)
+    entries = [(len(rows), "output directories", ""), (sum(map(len, rows)), "measured rows", ""),
+               (failed, "rows not ok", "no" if failed else "yes")]
+    entries += [(sum(item.verdict == verdict
+                     for item in verdicts), f"verdicts: {verdict}", css)
+                for verdict, (css, _) in SIGNS.items()]
+    return page.Section("summary", "Summary",
+                        page.tiles(entries) + lowest_totals(tables) + _missing(gaps), "Overview")
+
+
+def _missing(gaps):
+    lines = [
+        f'<li><a href="#{anchor}">{html.escape(heading)}</a>: {html.escape(reason)}</li>'
+        for anchor, heading, reason in gaps
+    ]
+    return f"<h3>Not in this report</h3><ul>{''.join(lines)}</ul>" if lines else ""
+
+
+def _runs(data):
+    rows = []
+    for experiment in data.tree.experiments:
+        frame, options = experiment.rows, experiment.manifest.get("options", {})
+        ok = (frame["status"] == "ok").sum()
+        rows.append((experiment.name, ", ".join(map(title, frame["scene"].unique())),
+                     ", ".join(sorted(frame["solver"].unique())),
+                     f"{step_count(frame)} of {options.get('steps', '?')}", f"{ok} of {len(frame)}",
+                     experiment.manifest.get("state", "?"), machine(experiment.manifest),
+                     experiment.manifest.get("utc_start", "?")))
+    head = ("directory", "scene", "solvers", "steps measured", "rows ok", "state", "machine", "started (UTC)")
+    return page.Section("runs", "What was run", page.table(head, rows), RUNS)
+
+
+def _messages(data):
+    body = page.bullet_list(data.messages) if data.messages else "<p>None: every file was read whole.</p>"
+    return page.Section("messages", "Messages", body, RUNS)

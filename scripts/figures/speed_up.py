@@ -1,0 +1,96 @@
+"""Modelled speed-up for 1 to 16 workers, beside what runs with more threads measured."""
+import re
+
+import pandas
+
+from figures import style
+from figures.choose import machines, title
+from figures.tree import NoData
+
+MODEL = re.compile(r"t_s_model_p(\d+)_ms")
+KEYS = ["seed", "step", "partitioner", "refiner"]
+
+
+def draw(data):
+    groups = [group for group in _groups(data) if group[1] is not None]
+    if not groups:
+        raise NoData("no one-thread run with columns t_s_model_p<N>_ms")
+    figure, axes = style.panels(len(groups), 2, 2.6, sharey=True)
+    measured, faults = False, []
+    for ax, (name, base, others) in zip(axes, groups):
+        faults.append(_model(ax, base.ok))
+        measured |= _measured(ax, base, others)
+        ax.set_title(name)
+    # The ideal line goes out of the picture; the curves decide how high it is.
+    heights = [height for ax in axes for line in ax.lines[1:] for height in line.get_ydata()]
+    axes[0].set_ylim(min(0.9, 0.9 * min(heights)), 1.1 * max(heights))
+    rows = pandas.concat([base.ok for _, base, _ in groups])
+    names, refiners = style.partitioners_in(rows["partitioner"]), style.refiners_in(rows["refiner"])
+    lines = [
+        style.matplotlib.lines.Line2D([], [], **style.line_look("-", name), label=name) for name in refiners
+    ]
+    style.legend_above(figure, [*style.partitioner_patches(names), *lines], columns=len(names) + len(lines))
+    said = (
+        "Large marks with a black edge: measured, t_s with one thread over t_s with that many on the same "
+        "steps." if measured else
+        "No data: no run with more threads of the same setup, so nothing measured stands beside.")
+    worst = max((fault for fault in faults if fault is not None), default=None)
+    check = "" if worst is None else f" The model's single worker is within {worst:.1%} of the measured t_s."
+    parts = [part for _, base, others in groups for part in [base, *others]]
+    return figure, (
+        "Speed-up of the solve against the number of workers, as ratio of mean t_s. Curves: modelled from "
+        "the task times of one-thread runs (every parallel stage takes the makespan of its tasks, longest "
+        f"first). Grey: ideal. {said}{check} {machines(parts)}")
+
+
+def _groups(data):
+    """[(name, one-thread block or None, blocks with more threads)] of the scenes of the paper's figures."""
+    for scene, main in data.main.items():
+        same = [
+            part for block in data.blocks if block.setup == main[0].setup and block.scene == scene and
+            (part := block.of_solver(data.solver)) is not None and part.label == main[0].label
+        ]
+        base = [part for part in same if part.threads == 1 and model_columns(part.ok)]
+        yield title(scene), base[0] if base else None, [part for part in same if (part.threads or 1) > 1]
+
+
+def model_columns(rows):
+    """{workers: column} of the columns that hold times."""
+    found = {int(match.group(1)): match.group(0) for match in map(MODEL.fullmatch, rows.columns) if match}
+    found = {workers: column for workers, column in sorted(found.items()) if rows[column].gt(0).any()}
+    return found if 1 in found else {}
+
+
+def _model(ax, rows):
+    """Draws the curves; returns the largest relative difference between the single worker and t_s."""
+    columns = model_columns(rows)
+    ax.plot(list(columns), list(columns), color=style.GRID, linewidth=3, zorder=1)
+    for (partitioner, refiner), part in rows.groupby(["partitioner", "refiner"]):
+        means = part[list(columns.values())].mean()
+        look = style.line_look(partitioner, refiner)
+        ax.plot(list(columns), means[columns[1]] / means, **look, markersize=3, linewidth=1)
+    ax.set(xscale="log", xlabel="workers", ylabel="speed-up of $t_s$")
+    ax.set_xticks(list(columns), list(map(str, columns)))
+    ax.xaxis.set_minor_locator(style.matplotlib.ticker.NullLocator())
+    if "t_s_ms" not in rows:
+        return None
+    return (rows[columns[1]] / rows["t_s_ms"] - 1).abs().max()
+
+
+def _measured(ax, base, others):
+    keys = [key for key in KEYS if key in base.rows]
+    drawn = False
+    for other in others:
+        both = base.ok.merge(other.ok, on=keys, suffixes=("_1", "_n"))
+        for (partitioner, refiner), part in both.groupby(["partitioner", "refiner"]):
+            look = style.line_look(partitioner, refiner)
+            ax.plot(other.threads,
+                    part["t_s_ms_1"].mean() / part["t_s_ms_n"].mean(),
+                    look["marker"],
+                    markersize=7,
+                    color=look["color"],
+                    markeredgecolor=style.INK,
+                    markeredgewidth=0.8,
+                    zorder=5)
+            drawn = True
+    return drawn

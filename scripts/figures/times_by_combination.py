@@ -1,0 +1,83 @@
+"""Figure 3 of the paper: average t_s of every example and combination."""
+import itertools
+
+import matplotlib.lines
+
+from figures import style
+from figures.choose import first_runs, provenance, scenes_with, title
+
+BAR_WIDTH = 0.8
+
+MEDIAN = {
+    "marker": "o",
+    "markersize": 3,
+    "markerfacecolor": "white",
+    "markeredgecolor": style.INK,
+    "markeredgewidth": 0.8,
+    "color": style.INK
+}
+
+
+def draw(data):
+    scenes, gaps = scenes_with(data.main, "t_s_ms")
+    figure, axes = style.panels(len(scenes), 2, 2.35)
+    for ax, (scene, rows) in zip(axes, scenes.items()):
+        ax.set_title(title(scene))
+        _panel(ax, rows, first_runs(data.main[scene]))
+    refiners = style.refiners_in(name for rows in scenes.values() for name in rows["refiner"])
+    median = matplotlib.lines.Line2D([], [], **MEDIAN, linestyle="none", label="median, quartiles")
+    style.legend_above(figure, [*style.refiner_patches(refiners), median], columns=5)
+    caption = (
+        "Average time t_s of a solve in every example and combination. Bars are means over the measured "
+        "steps, dots medians, lines reach from the lower to the upper quartile over the steps; the lowest "
+        "mean carries its value. ")
+    return figure, caption + gaps + provenance({title(scene): data.main[scene] for scene in scenes})
+
+
+def _panel(ax, rows, all_rows):
+    """rows: with status ok; all_rows: also the failed ones, which get a mark in place of a bar."""
+    partitioners, refiners = style.partitioners_in(all_rows["partitioner"]), style.refiners_in(
+        all_rows["refiner"])
+    width = BAR_WIDTH / len(refiners)
+    times = dict(list(rows.groupby(["partitioner", "refiner"])["t_s_ms"]))
+    lowest = min(times, key=lambda name: times[name].mean())
+    for name in itertools.product(partitioners, refiners):
+        x = partitioners.index(name[0]) + (refiners.index(name[1]) - (len(refiners) - 1) / 2) * width
+        if name in times:
+            _bar(ax, x, width, name, times[name], marked=name == lowest)
+        else:
+            run = ((all_rows["partitioner"] == name[0]) & (all_rows["refiner"] == name[1])).any()
+            ax.text(x,
+                    0.02,
+                    "no step ok" if run else "no data",
+                    transform=ax.get_xaxis_transform(),
+                    rotation=90,
+                    ha="center",
+                    va="bottom",
+                    fontsize=6.5,
+                    color=style.MUTED)
+    ax.set_xticks(range(len(partitioners)), partitioners)
+    ax.tick_params(axis="x", length=0)
+    ax.grid(axis="x", visible=False)
+    ax.set_ylim(bottom=0)
+    ax.set_ylabel("$t_s$ per step, ms")
+
+
+def _bar(ax, x, width, name, times, marked):
+    lower, median, upper = times.quantile([0.25, 0.5, 0.75])
+    ax.bar(x, times.mean(), 0.92 * width, **style.bar_look(*name))
+    ax.vlines(x, lower, upper, color=style.INK, linewidth=0.9)
+    ax.plot(x, median, **MEDIAN)
+    if marked:
+        ax.annotate(style.short(times.mean()), (x, max(times.mean(), upper)), (0, 3),
+                    textcoords="offset points",
+                    ha="center",
+                    va="bottom",
+                    fontsize=7.5,
+                    fontweight="bold",
+                    bbox={
+                        "facecolor": "white",
+                        "alpha": 0.8,
+                        "linewidth": 0,
+                        "pad": 0.8
+                    })

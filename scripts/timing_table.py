@@ -1,0 +1,141 @@
+"""Mean times of every combination of every scene, beside the paper's: the numbers of Table 1.
+
+t_s solves, t_pr partitions and refines, both in ms; total = t_s + t_pr.
+"""
+import dataclasses
+import math
+
+from cleave_results import NO_PARTITIONER, PARTITIONERS, REFINERS, SCENES, ResultError
+
+NEEDED = ("scene", "seed", "step", "partitioner", "refiner", "solver", "threads", "status", "t_s_ms",
+          "t_pr_ms")
+# A mean over rows that differ in one of these would mean nothing.
+SAME_IN_A_SCENE = ("solver", "threads", "friction", "max_bodies", "tau_mr", "tau_mix", "max_growth")
+
+
+@dataclasses.dataclass
+class Times:
+    """One pair of times in ms; nan where there is none."""
+
+    t_s_ms: float = math.nan
+    t_pr_ms: float = math.nan
+
+    @property
+    def total_ms(self):
+        return self.t_s_ms + self.t_pr_ms
+
+    def __truediv__(self, other):
+        """Ratios of t_s, t_pr and total; nan where one side is missing."""
+        ours = (self.t_s_ms, self.t_pr_ms, self.total_ms)
+        theirs = (other.t_s_ms, other.t_pr_ms, other.total_ms)
+        return [a / b if b > 0 else math.nan for a, b in zip(ours, theirs)]
+
+
+@dataclasses.dataclass
+class Cell:
+    partitioner: str
+    refiner: str
+    ours: Times = dataclasses.field(default_factory=Times)
+    paper: Times = dataclasses.field(default_factory=Times)
+    ok: int = 0  # measured steps that ours is the mean of
+    failed: int = 0  # rows with another status; not in the mean
+    missing: int = 0  # steps of the scene without a row of this combination
+    ours_lowest: bool = False
+    paper_lowest: bool = False
+
+    @property
+    def complete(self):
+        return self.ok > 0 and self.failed == 0 and self.missing == 0
+
+    @property
+    def remark(self):
+        parts = [
+            f"{count} of {self.ok + self.failed + self.missing} steps {what}"
+            for count, what in ((self.failed, "failed"), (self.missing, "missing"))
+            if count
+        ]
+        return ", ".join(parts)
+
+
+@dataclasses.dataclass
+class SceneTable:
+    scene: str
+    steps: int  # measured
+    threads: str
+    solver: str
+    cells: list  # Cell, in the paper's order
+
+    @property
+    def title(self):
+        return self.scene.replace("_", " ").title()
+
+
+def build_tables(rows, paper, where=()):
+    """One SceneTable a scene that has rows. where: (column, value) pairs a row must have."""
+    by_scene = {}
+    for row in rows:
+        if row["partitioner"] != NO_PARTITIONER and all(
+                _value(row, column) == value for column, value in where):
+            by_scene.setdefault(row["scene"], []).append(row)
+    if not by_scene:
+        raise ResultError("no measured rows of a partitioned solver" +
+                          (" that --where allows" if where else ""))
+    return [_scene_table(scene, by_scene[scene], paper) for scene in _in_order(by_scene, SCENES)]
+
+
+def _value(row, column):
+    if column not in row:
+        raise ResultError(f"{row.path}: no column {column}")
+    return row[column]
+
+
+def _scene_table(scene, rows, paper):
+    for column in SAME_IN_A_SCENE:
+        values = sorted({row[column] for row in rows if column in row})
+        if len(values) > 1:
+            raise ResultError(f"rows of {scene} mix {column} {', '.join(values)}; "
+                              f"choose one with --where {column}={values[0]}")
+    steps = {(row["seed"], row["step"]) for row in rows}
+    groups = {(partitioner, refiner): [] for partitioner in PARTITIONERS for refiner in REFINERS}
+    seen = {}
+    for row in rows:
+        key = (row["seed"], row["step"], row["partitioner"], row["refiner"])
+        if key in seen:
+            raise ResultError(
+                f"{row.path}, line {row.line}: step {row['step']} of {scene}, {row['partitioner']} "
+                f"{row['refiner']} stands already in {seen[key].path}, line {seen[key].line}")
+        seen[key] = row
+        groups.setdefault(key[2:], []).append(row)
+    cells = [_cell(scene, names, groups[names], len(steps), paper) for names in groups]
+    _mark_lowest([cell for cell in cells if cell.complete], "ours")
+    _mark_lowest(cells, "paper")
+    return SceneTable(scene, len(steps), rows[0]["threads"], rows[0]["solver"], cells)
+
+
+def _cell(scene, names, rows, steps, paper):
+    cell = Cell(*names, failed=sum(row["status"] != "ok" for row in rows), missing=steps - len(rows))
+    measured = [row for row in rows if row["status"] == "ok"]
+    cell.ok = len(measured)
+    if measured:
+        cell.ours = Times(_mean(measured, "t_s_ms"), _mean(measured, "t_pr_ms"))
+    if (scene, *names) in paper:
+        cell.paper = Times(*paper[(scene, *names)])
+    return cell
+
+
+def _mean(rows, column):
+    for row in rows:
+        if not math.isfinite(row.number(column)):
+            raise ResultError(f"{row.path}, line {row.line}: status ok, but {column} is '{row[column]}'")
+    return math.fsum(row.number(column) for row in rows) / len(rows)
+
+
+def _mark_lowest(cells, which):
+    totals = [getattr(cell, which).total_ms for cell in cells]
+    for cell, total in zip(cells, totals):
+        if not math.isnan(total) and total == min(value for value in totals if not math.isnan(value)):
+            setattr(cell, which + "_lowest", True)
+
+
+def _in_order(names, known):
+    return [name for name in known if name in names] + sorted(name for name in names if name not in known)

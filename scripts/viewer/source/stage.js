@@ -1,0 +1,127 @@
+// Camera, lights, ground and the two passes of a picture: bodies, then the graph in front of them.
+import * as THREE from 'three';
+import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
+
+const SKY = 0xf3f5f8;
+
+export class Stage {
+  constructor(canvas, onChange) {
+    this.canvas = canvas;
+    this.software = rendersInSoftware();
+    this.renderer = new THREE.WebGLRenderer({canvas, antialias: !this.software});
+    this.renderer.autoClear = false;
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.setClearColor(SKY);
+    this.camera = new THREE.PerspectiveCamera();
+    this.camera.up.set(0, 0, 1);
+    this.orbit = new OrbitControls(this.camera, canvas);
+    this.orbit.addEventListener('change', onChange);
+    this.front = new THREE.Scene();
+  }
+
+  // A new world with its bodies and graph.
+  show(recording, bodies, graph) {
+    this.world = new THREE.Scene();
+    this.sun = addLights(this.world);
+    this.world.add(bodies.mesh, makeGround(recording));
+    this.graph = graph;
+    this.front.clear().add(graph.group);
+    this.look(recording);
+  }
+
+  look({view}) {
+    const centre = new THREE.Vector3(...view.centre_m), r = view.radius_m;
+    this.orbit.target.set(...view.target_m);
+    this.camera.position.set(...view.eye_m);
+    const away = this.camera.position.distanceTo(this.orbit.target);
+    Object.assign(this.camera, {fov: view.field_of_view, near: away / 100, far: away * 20});
+    this.camera.updateProjectionMatrix();
+    this.orbit.update();
+
+    this.sun.position.set(-0.7, -0.9, 1.9).multiplyScalar(r).add(centre);
+    this.sun.target.position.copy(centre);
+    this.sun.target.updateMatrixWorld();
+    const box = this.sun.shadow.camera;
+    Object.assign(box, {left: -r, right: r, top: r, bottom: -r, near: 0.2 * r, far: 5 * r});
+    box.updateProjectionMatrix();
+    this.sun.shadow.bias = -1e-3;
+    this.sun.shadow.normalBias = 0.004 * r;
+  }
+
+  setShadows(on) {
+    this.sun.castShadow = on;
+  }
+
+  fit() {
+    const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
+    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / Math.max(height, 1);
+    this.camera.updateProjectionMatrix();
+    this.graph.setScale(
+        this.renderer.domElement.height / (2 * Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2))));
+  }
+
+  draw(showGraph) {
+    this.renderer.clear();
+    this.renderer.render(this.world, this.camera);
+    if (!showGraph) return;
+    this.renderer.clearDepth();
+    this.renderer.render(this.front, this.camera);
+  }
+
+  // The line of sight through a point of the canvas.
+  rayAt(x, y) {
+    const point =
+        new THREE.Vector2(2 * x / this.canvas.clientWidth - 1, 1 - 2 * y / this.canvas.clientHeight);
+    const caster = new THREE.Raycaster();
+    caster.setFromCamera(point, this.camera);
+    return caster.ray;
+  }
+}
+
+// Whether WebGL works without a graphics card; then smooth edges and shadows cost too much.
+function rendersInSoftware() {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (!gl) throw new Error('this browser offers no WebGL 2');
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = info ? gl.getParameter(info.UNMASKED_RENDERER_WEBGL) : '';
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|basic render|software/i.test(name);
+}
+
+function addLights(scene) {
+  const sun = new THREE.DirectionalLight(0xffffff, 2.1);
+  sun.shadow.mapSize.set(1024, 1024);
+  scene.add(new THREE.HemisphereLight(0xffffff, 0xb9bdc6, 1.7), sun, sun.target);
+  return sun;
+}
+
+// Planes as polygons that are seen from outside only, so that no wall hides the bodies; a grid on a lone
+// floor.
+function makeGround({ground, view}) {
+  const group = new THREE.Group();
+  for (const {corners_m, level, lone} of ground) {
+    const geometry =
+        new THREE.BufferGeometry().setFromPoints(corners_m.map((corner) => new THREE.Vector3(...corner)));
+    geometry.setIndex(corners_m.slice(2).flatMap((_, i) => [0, i + 1, i + 2]));
+    geometry.computeVertexNormals();
+    const material = lone ?
+        new THREE.ShadowMaterial({opacity: 0.25}) :
+        new THREE.MeshLambertMaterial(
+            {color: level ? 0xe9ebee : 0xd3d8df, transparent: true, opacity: level ? 1 : 0.75});
+    const mesh = new THREE.Mesh(geometry, material);
+    mesh.receiveShadow = true;
+    group.add(mesh);
+    if (lone) group.add(makeGrid(corners_m[0][2], view));
+  }
+  return group;
+}
+
+// One square metre a square, or ten by ten of them where the view is wide.
+function makeGrid(height, {centre_m, radius_m}) {
+  const square = radius_m > 30 ? 10 : 1, count = 2 * Math.ceil(2 * radius_m / square);
+  const grid = new THREE.GridHelper(count * square, count, 0xc3c9d2, 0xdde1e7).rotateX(Math.PI / 2);
+  grid.position.set(Math.round(centre_m[0]), Math.round(centre_m[1]), height - 0.002 * radius_m);
+  return grid;
+}

@@ -1,0 +1,277 @@
+// The command line as a user meets it: what is refused, in which words, and that nothing is left behind.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "harness/friction.h"
+#include "harness/nearest_name.h"
+#include "harness/options.h"
+#include "partition/registry.h"
+#include "scenarios/scene.h"
+#include "solver/registry.h"
+#include "tests/harness/run_program.h"
+
+namespace cleave {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct BadInput {
+  std::vector<std::string> arguments;  // after "run --scene rock_pile --out DIR"
+  std::vector<std::string> pieces;     // all of them must stand in the one line
+};
+
+const std::vector<BadInput> kBadInputs = {
+    {{"--mu", "-1"}, {"--mu", "-1", "[0, inf)"}},
+    {{"--mu=-1"}, {"--mu", "-1", "[0, inf)"}},
+    {{"--mu", "x"}, {"--mu", "'x'", "number", "[0, inf)"}},
+    {{"--mu", "1x"}, {"--mu", "'1x'", "number"}},
+    {{"--mu", "inf"}, {"--mu", "inf", "[0, inf)"}},
+    {{"--dt", "0"}, {"--dt", "0", "(0, inf)"}},
+    {{"--dt", "-0.1"}, {"--dt", "-0.1", "(0, inf)"}},
+    {{"--dt", "nan"}, {"--dt", "nan", "(0, inf)"}},
+    {{"--dt", "1e999"}, {"--dt", "1e999", "(0, inf)"}},
+    {{"--cfm", "-1e-5"}, {"--cfm", "-1e-5", "[0, inf)"}},
+    {{"--erp", "1.5"}, {"--erp", "1.5", "[0, 1]"}},
+    {{"--gravity", "nan"}, {"--gravity", "nan", "(-inf, inf)"}},
+    {{"--contact-cap", "0"}, {"--contact-cap", "0", "[1, 65535]"}},
+    {{"--match-tolerance", "-1"}, {"--match-tolerance", "-1", "[0, inf)"}},
+    {{"--max-bodies", "0"}, {"--max-bodies", "0", "[1, inf)"}},
+    {{"--max-bodies", "2.5"}, {"--max-bodies", "'2.5'", "whole number", "[1, inf)"}},
+    {{"--max-bodies", "99999999999"}, {"--max-bodies", "99999999999", "[1, inf)"}},
+    {{"--tau-mr", "1"}, {"--tau-mr", "1", "(1, inf)"}},
+    {{"--tau-mix", "1.1"}, {"--tau-mix", "1.1", "[0, 1]"}},
+    {{"--tau-mix", "-0.1"}, {"--tau-mix", "-0.1", "[0, 1]"}},
+    {{"--max-growth", "-1"}, {"--max-growth", "-1", "[0, inf)"}},
+    {{"--threads", "0"}, {"--threads", "0", "[1, 1024]"}},
+    {{"--steps", "-1"}, {"--steps", "-1", "[0, inf)"}},
+    {{"--measure-every", "0"}, {"--measure-every", "0", "[1, inf)"}},
+    {{"--repeats", "0"}, {"--repeats", "0", "[1, inf)"}},
+    {{"--skip", "-1"}, {"--skip", "-1", "[0, inf)"}},
+    {{"--sweeps", "-1"}, {"--sweeps", "-1", "[0, inf)"}},
+    {{"--seed", "-1"}, {"--seed", "'-1'", "[0, 2^64)"}},
+    {{"--bodies", "0"}, {"--bodies", "0", "[1, "}},
+    {{"--mass", "-5"}, {"--mass", "-5", "["}},
+    {{"--mass", "10,-5"}, {"--mass", "-5", "["}},
+    {{"--rock-shape", "egg"}, {"--rock-shape", "'egg'", "box"}},
+    {{"--links", "5"}, {"--links", "rock_pile", "--bodies", "--rock-shape", "--mass"}},
+    {{"--scene", "rock_pil"}, {"--scene"}},
+    {{"--partitioner", "mindq"}, {"--partitioner", "'mindq'", "'mindp'", "maxdp", "bfs"}},
+    {{"--partitioner", "mindp,mindp"}, {"--partitioner", "'mindp'", "twice"}},
+    {{"--partitioner", ""}, {"--partitioner", "''", "mindp"}},
+    {{"--refiner", "fn"}, {"--refiner", "'fn'", "'fm'", "none"}},
+    {{"--solver", "shcur"}, {"--solver", "'shcur'", "'schur'", "monolithic"}},
+    {{"--solver", "all"}, {"--solver", "'all'", "schur"}},
+    {{"--advance", "exakt"}, {"--advance", "'exakt'", "'exact'"}},
+    {{"--strategy", "pivott"}, {"--strategy", "'pivott'", "'pivot'"}},
+    {{"--kernel", "schur-row"}, {"--kernel", "'schur-row'", "'schur-rows'"}},
+    {{"--solver", "pgs", "--kernel", "dense"}, {"--solver", "'pgs'"}},
+    {{"--friction", "boks"}, {"--friction", "'boks'", "'box'", "constant"}},
+    {{"--friction", "constant"}, {"--friction-force-n", "required"}},
+    {{"--friction-force-n", "3"}, {"--friction-force-n", "--friction constant"}},
+    {{"--friction", "constant", "--friction-force-n", "-3"}, {"--friction-force-n", "-3", "[0, inf)"}},
+    {{"--mode", "lokstep"}, {"--mode", "'lokstep'", "'lockstep'", "separate"}},
+    {{"--mode", "separate", "--advance", "exact"}, {"--advance", "lockstep"}},
+    {{"--edge-weight", "row"}, {"--edge-weight", "'row'", "'rows'"}},
+    {{"--degree", "body"}, {"--degree", "'body'"}},
+    {{"--degree-scope", "all"}, {"--degree-scope", "'all'", "whole", "left"}},
+    {{"--stiffness", "1000"}, {"--damping", "required"}},
+    {{"--damping", "10"}, {"--stiffness", "required"}},
+    {{"--stiffness", "0", "--damping", "10"}, {"--stiffness", "0", "(0, inf)"}},
+    {{"--stiffness", "1000", "--damping", "10", "--erp", "0.1"}, {"--erp", "--stiffness"}},
+    {{"--stiffness", "1000", "--damping", "10", "--cfm", "0.1"}, {"--cfm", "--stiffness"}},
+    {{"--stpes", "5"}, {"--stpes", "--steps"}},
+    {{"--stpes=5"}, {"--stpes", "--steps"}},
+    {{"--steps"}, {"--steps"}},
+    {{"--mu", "1", "--mu", "2"}, {"--mu"}},
+    {{"stray"}, {"'stray'"}},
+};
+
+TEST(BadInput, IsOneLineExitCodeOneAndLeavesNothing) {
+  const TemporaryDirectory directory;
+  const std::string out = directory / "not" / "made";
+  for (const BadInput& bad : kBadInputs) {
+    std::vector<std::string> arguments = {"run", "--scene", "rock_pile", "--out", out};
+    arguments.insert(arguments.end(), bad.arguments.begin(), bad.arguments.end());
+    const ProgramResult result = run_cleave(arguments);
+    const std::string what = joined(bad.arguments, " ") + " -> " + result.err;
+    EXPECT_EQ(result.exit_code, 1) << what;
+    EXPECT_EQ(count_lines(result.err), 1) << what;
+    EXPECT_TRUE(result.err.starts_with("cleave run: ")) << what;
+    EXPECT_EQ(result.out, "") << what;
+    for (const std::string& piece : bad.pieces)
+      EXPECT_NE(result.err.find(piece), std::string::npos) << piece << " in " << what;
+    EXPECT_TRUE(fs::is_empty(directory.path())) << what;
+  }
+}
+
+TEST(BadInput, RequiredOptionsAndNames) {
+  const TemporaryDirectory directory;
+  const std::string out = directory / "out";
+  EXPECT_NE(run_cleave({"run", "--out", out}).err.find("--scene: is required"), std::string::npos);
+  EXPECT_NE(run_cleave({"run", "--scene", "rock_pile"}).err.find("--out: is required"), std::string::npos);
+  const ProgramResult scene = run_cleave({"run", "--scene", "rock_pil", "--out", out});
+  EXPECT_EQ(scene.exit_code, 1);
+  EXPECT_NE(scene.err.find("did you mean 'rock_pile'?"), std::string::npos) << scene.err;
+  EXPECT_NE(scene.err.find("chain_drop"), std::string::npos) << scene.err;
+  const ProgramResult command = run_cleave({"rum"});
+  EXPECT_EQ(command.exit_code, 1);
+  EXPECT_NE(command.err.find("did you mean 'run'?"), std::string::npos) << command.err;
+  EXPECT_EQ(run_cleave({}).exit_code, 1);
+  EXPECT_TRUE(fs::is_empty(directory.path()));
+}
+
+TEST(BadInput, OutputDirectoryThatCannotBe) {
+  const TemporaryDirectory directory;
+  const fs::path file = directory / "file";
+  std::ofstream(file) << "text";
+  for (const std::string& out :
+       {file.string(), (file / "below").string(), std::string("/proc/cleave/out"), std::string()}) {
+    const ProgramResult result = run_cleave({"run", "--scene", "rock_pile", "--steps", "0", "--out", out});
+    EXPECT_EQ(result.exit_code, 1) << out;
+    EXPECT_EQ(count_lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("--out: '" + out + "'"), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(read_text(file), "text");
+}
+
+TEST(OutputDirectory, IsOverwrittenOnlyWithForce) {
+  const TemporaryDirectory directory;
+  const std::vector<std::string> arguments = {"run",     "--scene", "rock_pile", "--bodies",       "2",
+                                              "--steps", "0",       "--out",     directory / "a/b"};
+  ASSERT_EQ(run_cleave(arguments).exit_code, 0);
+  std::ofstream(directory / "a/b/steps.csv") << "precious\n";
+  const ProgramResult refused = run_cleave(arguments);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("--force"), std::string::npos) << refused.err;
+  EXPECT_EQ(read_text(directory / "a/b/steps.csv"), "precious\n");
+  std::vector<std::string> forced = arguments;
+  forced.push_back("--force");
+  EXPECT_EQ(run_cleave(forced).exit_code, 0);
+  EXPECT_NE(read_text(directory / "a/b/steps.csv"), "precious\n");
+}
+
+void expect_listed(const std::string& what, const std::vector<std::string>& names) {
+  const ProgramResult result = run_cleave({"list", what, "--names"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(result.out, joined(names, "\n") + "\n");
+  const ProgramResult table = run_cleave({"list", what});
+  for (const std::string& name : names)
+    EXPECT_NE(table.out.find("  " + name + " "), std::string::npos) << name;
+}
+
+TEST(List, ShowsTheRegistries) {
+  expect_listed("scenes", names_of(scenes()));
+  expect_listed("partitioners", names_of(partitioners()));
+  expect_listed("refiners", names_of(refiners()));
+  expect_listed("solvers", names_of(solver_table()));
+  expect_listed("strategies", names_of(strategy_table()));
+  expect_listed("kernels", names_of(kernel_table()));
+  expect_listed("frictions", names_of(friction_models()));
+  const ProgramResult wrong = run_cleave({"list", "partitoners"});
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_NE(wrong.err.find("'partitioners'"), std::string::npos) << wrong.err;
+}
+
+TEST(Help, ShowsEveryOption) {
+  const ProgramResult result = run_cleave({"run", "--help"});
+  EXPECT_EQ(result.exit_code, 0);
+  for (const OptionSpec& spec : run_option_specs())
+    EXPECT_NE(result.out.find("--" + spec.name + " "), std::string::npos) << spec.name;
+  for (const SceneEntry& scene : scenes())
+    for (const SceneParameter& parameter : scene.parameters)
+      EXPECT_NE(result.out.find("--" + std::string(parameter.name) + " "), std::string::npos)
+          << parameter.name;
+}
+
+RunOptions parsed(std::map<std::string, std::string> given) {
+  given.insert({{"scene", "rock_pile"}, {"out", "x"}});
+  return parse_run_options(given);
+}
+
+// What an option prints is what it reads.
+TEST(Options, EveryDefaultReadsBackAsItself) {
+  const RunOptions defaults = default_run_options();
+  for (const OptionSpec& spec : run_option_specs()) {
+    const std::string text = spec.get(defaults);
+    if (text.empty() || text == "nan") continue;
+    RunOptions options = defaults;
+    spec.set(options, text);
+    EXPECT_EQ(spec.get(options), text) << spec.name;
+  }
+}
+
+TEST(Options, EveryGivenValueArrives) {
+  const RunOptions options = parsed({{"mu", "0.25"},
+                                     {"partitioner", "mix,bfs"},
+                                     {"refiner", "all"},
+                                     {"dt", "0.01"},
+                                     {"edge-weight", "pairs"},
+                                     {"degree-scope", "left"},
+                                     {"friction", "box-converged"},
+                                     {"as-printed", "true"},
+                                     {"max-bodies", "7"},
+                                     {"max-growth", "0.5"},
+                                     {"seed", "18446744073709551615"},
+                                     {"bodies", "12"}});
+  EXPECT_EQ(options.extract.mu, 0.25);
+  EXPECT_EQ(options.extract.h_s, 0.01);
+  EXPECT_EQ(options.extract.friction, FrictionModel::box_converged);
+  EXPECT_EQ(options.partitioners, (std::vector<std::string>{"mix", "bfs"}));
+  EXPECT_EQ(options.refiners, names_of(refiners()));
+  EXPECT_EQ(options.partition.edge_weight, EdgeWeight::pairs);
+  EXPECT_EQ(options.partition.degree_scope, DegreeScope::left);
+  EXPECT_TRUE(options.partition.as_printed);
+  EXPECT_EQ(options.seed, 18446744073709551615u);
+  EXPECT_EQ(options.scene_options.at("bodies"), "12");
+  EXPECT_EQ(options.scene_options.at("rock-shape"), "box");  // completed with the scene's default
+  const RefineOptions refine = options.refine();
+  EXPECT_EQ(refine.max_bodies, 7);
+  EXPECT_EQ(refine.max_growth, 0.5);
+  EXPECT_EQ(refine.edge_weight, EdgeWeight::pairs);
+  EXPECT_TRUE(refine.as_printed);
+}
+
+TEST(Options, FrictionWordsFollowTheEnumeration) {
+  for (const FrictionModelEntry& entry : friction_models()) {
+    std::map<std::string, std::string> given = {{"friction", entry.name}};
+    if (entry.model == FrictionModel::constant) given["friction-force-n"] = "1";
+    EXPECT_EQ(parsed(given).extract.friction, entry.model) << entry.name;
+  }
+}
+
+// A spring k with damper d integrated implicitly over h: erp / cfm = h k and (1 - erp) / cfm = d.
+TEST(Options, StiffnessAndDampingBecomeErpAndCfm) {
+  const RunOptions options = parsed({{"stiffness", "5000"}, {"damping", "40"}, {"dt", "0.02"}});
+  EXPECT_NEAR(options.extract.erp / options.extract.cfm, 0.02 * 5000, 1e-10);
+  EXPECT_NEAR((1 - options.extract.erp) / options.extract.cfm, 40, 1e-10);
+}
+
+TEST(Options, StrategyAndKernelReplaceHalvesOfSolverNames) {
+  EXPECT_EQ(parsed({{"solver", "schur"}, {"strategy", "interior-point"}}).solvers,
+            std::vector<std::string>{"interior-point:schur-rows"});
+  EXPECT_EQ(parsed({{"solver", "schur"}, {"kernel", "monolithic"}}).solvers,
+            std::vector<std::string>{"pivot:monolithic"});
+  EXPECT_EQ(parsed({{"solver", "interior-point:dense"}, {"kernel", "monolithic"}}).solvers,
+            std::vector<std::string>{"interior-point:monolithic"});
+  EXPECT_THROW(parsed({{"solver", "schur,monolithic"}, {"kernel", "dense"}}),
+               std::invalid_argument);  // the same twice
+}
+
+TEST(Options, RunIdDependsOnTheExperimentOnly) {
+  const std::string id = run_id(parsed({}));
+  EXPECT_EQ(id.size(), 16u);
+  EXPECT_EQ(run_id(parsed({{"threads", "2"}, {"out", "elsewhere"}, {"force", "true"}})), id);
+  EXPECT_EQ(run_id(parsed({{"mu", "0.5"}})), id);  // the default said aloud
+  for (const auto& [name, value] : std::map<std::string, std::string>{{"mu", "0.6"},
+                                                                      {"seed", "2"},
+                                                                      {"bodies", "5"},
+                                                                      {"steps", "3"},
+                                                                      {"refiner", "fm"},
+                                                                      {"as-printed", "true"}})
+    EXPECT_NE(run_id(parsed({{name, value}})), id) << name;
+}
+
+}  // namespace
+}  // namespace cleave

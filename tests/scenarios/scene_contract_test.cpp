@@ -1,0 +1,132 @@
+// What every scene of the registry promises, whatever its parameters.
+#include <gtest/gtest.h>
+
+#include "scenario_text.h"
+#include "scene_world.h"
+
+namespace cleave {
+namespace {
+
+using Given = std::map<std::string, std::string>;
+
+struct Case {
+  const SceneEntry* scene;
+  Given given;
+};
+
+std::string describe(const Case& c) {
+  std::string text = c.scene->name;
+  for (const auto& [name, value] : c.given) text += " --" + name + " " + value;
+  return text;
+}
+
+// Defaults, every whole number at its least, and every choice with the other parameters at their defaults.
+std::vector<Case> all_cases() {
+  std::vector<Case> cases;
+  for (const SceneEntry& scene : scenes()) {
+    Given smallest;
+    cases.push_back({&scene, {}});
+    for (const SceneParameter& parameter : scene.parameters) {
+      const std::string least = number_text(parameter.min);
+      if (parameter.type == SceneParameter::Type::integer) {
+        cases.push_back({&scene, {{parameter.name, least}}});
+        smallest[parameter.name] = least;
+      }
+      for (const std::string& choice : parameter.choices)
+        cases.push_back({&scene, {{parameter.name, choice}}});
+    }
+    cases.push_back({&scene, smallest});
+  }
+  return cases;
+}
+
+// Position, orientation and mass of every body.
+std::vector<double> snapshot(const SceneContent& content) {
+  std::vector<double> values;
+  for (const dBodyID body : content.bodies) {
+    const dReal *x = dBodyGetPosition(body), *q = dBodyGetQuaternion(body);
+    dMass mass;
+    dBodyGetMass(body, &mass);
+    values.insert(values.end(), x, x + 3);
+    values.insert(values.end(), q, q + 4);
+    values.push_back(mass.mass);
+    values.insert(values.end(), mass.I, mass.I + 12);
+  }
+  return values;
+}
+
+// By leading minors; ODE stores rows of four.
+bool positive_definite(const dReal* inertia) {
+  const auto at = [inertia](int i, int j) { return inertia[4 * i + j]; };
+  const double minor2 = at(0, 0) * at(1, 1) - at(0, 1) * at(1, 0);
+  const double minor3 = at(0, 0) * (at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1)) -
+                        at(0, 1) * (at(1, 0) * at(2, 2) - at(1, 2) * at(2, 0)) +
+                        at(0, 2) * (at(1, 0) * at(2, 1) - at(1, 1) * at(2, 0));
+  return at(0, 0) > 0 && minor2 > 0 && minor3 > 0;
+}
+
+TEST(SceneContract, StartsAtRestWithoutOverlap) {
+  for (const Case& c : all_cases()) {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+      SceneWorld world(*c.scene, c.given, seed);
+      EXPECT_LE(world.collide().largest_depth_m, 1e-6) << describe(c) << " seed " << seed;
+      for (const dBodyID body : world.content().bodies) EXPECT_EQ(speed_m_per_s(body), 0) << describe(c);
+      for (const dJointID joint : world.content().joints) {
+        ASSERT_EQ(dJointGetType(joint), dJointTypeBall);
+        dVector3 a, b, gap;
+        dJointGetBallAnchor(joint, a);
+        dJointGetBallAnchor2(joint, b);
+        dSubtractVectors3(gap, a, b);
+        EXPECT_LT(dCalcVectorLength3(gap), 1e-12) << describe(c);
+      }
+    }
+  }
+}
+
+TEST(SceneContract, BodiesHaveMassInertiaAndGeometry) {
+  for (const Case& c : all_cases()) {
+    SceneWorld world(*c.scene, c.given);
+    ASSERT_FALSE(world.content().bodies.empty()) << describe(c);
+    std::map<dBodyID, int> geoms_of;
+    for (const dGeomID geom : world.content().geoms) ++geoms_of[dGeomGetBody(geom)];
+    EXPECT_GT(geoms_of[nullptr], 0) << describe(c) << ": nothing to fall on";
+    for (const dBodyID body : world.content().bodies) {
+      dMass mass;
+      dBodyGetMass(body, &mass);
+      EXPECT_GT(mass.mass, 0) << describe(c);
+      EXPECT_TRUE(positive_definite(mass.I)) << describe(c);
+      EXPECT_EQ(dCalcVectorDot3(mass.c, mass.c), 0) << describe(c);
+      EXPECT_GT(geoms_of[body], 0) << describe(c);
+    }
+  }
+}
+
+TEST(SceneContract, TheSeedAndNothingElseDecides) {
+  for (const Case& c : all_cases()) {
+    if (c.given.size() > 1) continue;
+    SceneWorld a(*c.scene, c.given, 5), b(*c.scene, c.given, 5), other(*c.scene, c.given, 6);
+    EXPECT_EQ(snapshot(a.content()), snapshot(b.content())) << describe(c);
+    EXPECT_NE(snapshot(a.content()), snapshot(other.content())) << describe(c);
+  }
+}
+
+TEST(SceneContract, NothingFallsThroughTheStaticPlanes) {
+  for (const SceneEntry& scene : scenes()) {
+    Given small;
+    for (const SceneParameter& parameter : scene.parameters)
+      if (parameter.type == SceneParameter::Type::integer)
+        small[parameter.name] = number_text(std::min(30.0, std::stod(parameter.default_value)) / 3);
+    SceneWorld world(scene, small.count("logs") ? Given{{"layers", "5"}, {"logs", "3"}} : small);
+    for (int step = 0; step < 200; ++step) world.step(step, 30);
+    for (const dGeomID geom : world.content().geoms) {
+      if (dGeomGetClass(geom) != dPlaneClass) continue;
+      dVector4 plane;
+      dGeomPlaneGetParams(geom, plane);
+      for (const dBodyID body : world.content().bodies)
+        EXPECT_GT(dCalcVectorDot3(plane, dBodyGetPosition(body)), plane[3]) << scene.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cleave

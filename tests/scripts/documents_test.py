@@ -1,0 +1,139 @@
+"""What the documents and lists say agrees with the sources."""
+import re
+import subprocess
+import unittest
+
+from synthetic import ROOT, SCRIPTS, good_row, run_script
+
+# Where each package is looked for or used, and under which of these names. Any other python3-* package has to
+# be imported by a script.
+USED_BY = {
+    "cmake": ("CMakePresets.json", "configurePresets"),
+    "ninja-build": ("CMakePresets.json", "Ninja"),
+    "g++": ("CMakeLists.txt", "OpenMP"),
+    "pkg-config": ("CMakeLists.txt", "PkgConfig"),
+    "git": ("harness/build_info.cmake", "git"),
+    "libode-dev": ("CMakeLists.txt", "ode"),
+    "libeigen3-dev": ("CMakeLists.txt", "Eigen3"),
+    "libsuitesparse-dev": ("CMakeLists.txt", "cholmod", "camd", "amd"),
+    "libopenblas-dev": ("CMakeLists.txt", "openblas"),
+    "libcli11-dev": ("CMakeLists.txt", "CLI11"),
+    "libhdf5-dev": ("CMakeLists.txt", "HDF5"),
+    "libgtest-dev": ("tests/CMakeLists.txt", "GTest"),
+    "libbenchmark-dev": ("tests/CMakeLists.txt", "benchmark"),
+    "libmetis-dev": ("tests/CMakeLists.txt", "metis"),
+    "python3": ("tests/CMakeLists.txt", "python3"),
+    "chromium": ("tests/scripts/browser.py", "chromium"),
+    "povray": ("scripts/povray_scene.py", "povray"),
+    "npm": ("scripts/viewer.py", "npm"),
+}
+
+
+def packages():
+    lines = (SCRIPTS / "packages.txt").read_text().splitlines()
+    return dict(line.split(maxsplit=1) for line in lines if line and not line.startswith("#"))
+
+
+def step_record_columns():
+    """Columns of steps.csv as harness/step_record.h lists them, with one t_s_* a stage and worker count."""
+    text = (ROOT / "harness" / "step_record.h").read_text()
+    columns = re.findall(r'visit\("(\w+)",', text)
+    clock = (ROOT / "solver" / "stage_clock.h").read_text()
+    stages = re.findall(r'"(\w+)"', re.search(r"kStageNames = \{(.*?)\}", clock, re.S).group(1))
+    workers = re.search(r"kModelWorkers = \{(.*?)\}", clock).group(1).replace(" ", "").split(",")
+    return set(columns) | {f"t_s_{stage}_ms" for stage in stages
+                          } | {f"t_s_model_p{count}_ms" for count in workers}
+
+
+class PackagesTest(unittest.TestCase):
+
+    def test_every_package_is_named_once_with_a_reason(self):
+        lines = [
+            line for line in (SCRIPTS / "packages.txt").read_text().splitlines() if not line.startswith("#")
+        ]
+        self.assertEqual(len(lines), len(packages()))
+        self.assertTrue(all(len(reason.split()) > 1 for reason in packages().values()))
+
+    def test_every_package_is_used(self):
+        for package in packages():
+            if package not in USED_BY:
+                self.assertIn(package.removeprefix("python3-"), self.imported_modules(), package)
+                continue
+            place, *names = USED_BY[package]
+            text = (ROOT / place).read_text()
+            self.assertTrue(any(re.search(rf"\b{name}\b", text) for name in names),
+                            f"{package}: {place} has no {names}")
+
+    def test_everything_cmake_looks_for_has_a_package(self):
+        text = "".join((ROOT / name).read_text() for name in ("CMakeLists.txt", "tests/CMakeLists.txt"))
+        found = re.findall(r"find_package\((?!Python3)(\w+)|IMPORTED_TARGET (\w+)|find_library\(\w+ (\w+)",
+                           text)
+        known = {name for package in packages() for name in USED_BY.get(package, ())}
+        self.assertEqual(set(filter(None, sum(found, ()))) - known, set())
+
+    def test_every_imported_module_has_a_package(self):
+        for module in self.imported_modules():
+            self.assertIn(f"python3-{module}", packages())
+
+    def imported_modules(self):
+        """Modules that python scripts import and that are neither python's own nor ours."""
+        import sys
+        files = [
+            file for folder in (SCRIPTS, SCRIPTS / "figures", ROOT / "tests" / "scripts")
+            for file in folder.iterdir() if file.is_file() and
+            (file.suffix == ".py" or not file.suffix and file.read_text().startswith("#!/usr/bin/python3"))
+        ]
+        names = set()
+        for file in files:
+            names |= set(re.findall(r"^\s*(?:import|from) (\w+)", file.read_text(), re.M))
+        return names - set(sys.stdlib_module_names) - {file.stem for file in files} - {"figures"}
+
+
+class ColumnsTest(unittest.TestCase):
+
+    def test_results_readme_explains_every_column_and_no_other(self):
+        text = (ROOT / "results" / "README.md").read_text()
+        rows = [
+            line.split("|")[1]
+            for line in text[text.index("### The experiment"):].splitlines()
+            if line.startswith("| `")
+        ]
+        self.assertEqual(sorted(name for row in rows for name in re.findall(r"`(\w+)`", row)),
+                         sorted(step_record_columns()))
+
+    def test_the_made_up_rows_have_real_columns(self):
+        self.assertLessEqual(set(good_row("rock_pile", 0, "mix", "fm")), step_record_columns())
+
+
+class ScriptsTest(unittest.TestCase):
+
+    def commands(self):
+        return [file for file in SCRIPTS.iterdir() if file.is_file() and not file.suffix]
+
+    def test_every_command_can_be_run_and_explains_itself(self):
+        self.assertGreaterEqual(len(self.commands()), 6)
+        for file in self.commands():
+            self.assertIn(file.read_text().splitlines()[0], ("#!/bin/bash", "#!/usr/bin/python3"), file)
+            result = run_script(file.name, "--help")
+            self.assertEqual(result.returncode, 0, file)
+            self.assertIn("usage: ", result.stdout, file)
+            self.assertIn("Exit codes", result.stdout, file)
+
+    def test_bash_scripts_parse_and_are_strict(self):
+        for file in [*self.commands(), ROOT / ".ci" / "run"]:
+            text = file.read_text()
+            if text.startswith("#!/bin/bash"):
+                self.assertIn("\nset -euo pipefail\n", text, file)
+                self.assertEqual(subprocess.run(["bash", "-n", file], check=False).returncode, 0, file)
+
+    def test_links_and_files_the_readmes_name_exist(self):
+        for readme in (ROOT / "README.md", ROOT / "results" / "README.md"):
+            text = readme.read_text()
+            for target in re.findall(r"\]\(([^)#]+)\)", text):
+                self.assertTrue((readme.parent / target).exists(), f"{readme}: {target}")
+            for target in re.findall(r"`((?:partition|solver|scenarios|harness|scripts)/[\w./]*)`", text):
+                self.assertTrue((ROOT / target).exists(), f"{readme}: {target}")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,116 @@
+"""A small made-up tree of output directories as `scripts/report` reads it, with known figures."""
+import math
+import pathlib
+
+from synthetic import good_row, write_manifest, write_steps
+
+from cleave_results import PARTITIONERS, REFINERS, SCENES, load_paper_table1
+
+PAPER = load_paper_table1()
+STEPS = range(9, 90, 10)
+STAGES = ("analyze", "factor_local", "factor_interface")
+
+
+def report_row(scene, step, partitioner, refiner, **changes):
+    """The paper's own times with a little that changes from step to step; everything the figures need."""
+    t_s, t_pr = PAPER.get((scene, partitioner, refiner), (10.0, 1.0))
+    t_s *= 1 + 0.1 * math.sin(step)
+    row = good_row(scene, step, "mindp", "none") | {
+        "partitioner": partitioner,
+        "refiner": refiner,
+        "threads": 1,
+        "repeat_count": 3,
+        "bodies": 200,
+        "rows": 900,
+        "interface_rows": round(30 * t_s**(1 / 3)),
+        "factor_mflop_local": 1.0,
+        "factor_mflop_interface": 0.1 * t_s,
+        "factorizations": 4,
+        "part_mass_ratio_max": 1 if partitioner == "mr" else 100,
+        "t_s_ms": t_s,
+        "t_s_min_ms": 0.98 * t_s,
+        "t_pr_ms": t_pr / 20,
+        "t_s_other_ms": 0.1 * t_s
+    }
+    row |= {f"t_s_{stage}_ms": 0.3 * t_s for stage in STAGES}
+    row |= {f"t_s_model_p{workers}_ms": t_s * (0.5 + 0.5 / workers) for workers in (1, 2, 4, 8, 16)}
+    return row | changes
+
+
+def rows_of(scene, partitioners=PARTITIONERS, refiners=REFINERS, steps=STEPS, **changes):
+    return [
+        report_row(scene, step, partitioner, refiner, **changes) for step in steps
+        for partitioner in partitioners for refiner in refiners
+    ]
+
+
+def manifest(scene, **options):
+    return {
+        "state": "complete",
+        "utc_start": "2026-01-01T00:00:00Z",
+        "build": {
+            "git_hash": "0123456789ab"
+        },
+        "machine": {
+            "cpu_model": "Some_CPU",
+            "cores": 6
+        },
+        "options": {
+            "scene": scene,
+            "threads": 1,
+            "steps": 90,
+            "sweeps": 5,
+            "strategy": "",
+            "kernel": "",
+            "reuse-analysis": False,
+            "skip": 0,
+            **options
+        }
+    }
+
+
+def write_run(directory, rows, **options):
+    write_steps(directory, rows)
+    write_manifest(directory, **manifest(rows[0]["scene"], **options))
+
+
+def whole_system(solver, **changes):
+    return rows_of("rock_pile", ("-",), ("-",), solver=solver, kernel=solver, **changes)
+
+
+def write_tree(directory):
+    """Four scenes, a two-thread run, three sizes, four solvers in four runs, and a ladder."""
+    directory = pathlib.Path(directory)
+    for scene in SCENES:
+        write_run(directory / scene, rows_of(scene))
+    write_run(
+        directory / "two_threads",
+        [dict(row, threads=2, t_s_ms=0.6 * row["t_s_ms"]) for row in rows_of("rock_pile", ("mindp", "mix"))],
+        threads=2)
+    for size in (50, 100, 200):
+        scale = {"none": (size / 50)**2, "kl": 0.9 * (size / 50)**2, "fm": 0.8 * (size / 50)**1.5}
+        rows = [
+            dict(row, bodies=size, t_s_ms=scale[row["refiner"]], t_s_min_ms=scale[row["refiner"]])
+            for row in rows_of("rock_pile", ("mindp", "mix"))
+        ]
+        write_run(directory / "scaling" / f"bodies_{size}", rows, bodies=size)
+    bodies_kernel = rows_of("rock_pile", ("mindp", "mix"), ("none", "fm"),
+                            solver="pivot:schur-bodies",
+                            kernel="schur-bodies")
+    write_run(directory / "solvers" / "direct", bodies_kernel + whole_system("monolithic", t_s_ms=5))
+    for sweeps, residual in ((10, 1e-2), (100, 1e-5)):
+        write_run(directory / "solvers" / f"pgs_{sweeps}",
+                  whole_system("pgs", t_s_ms=sweeps / 10, residual_m_per_s=residual, status="not_converged"),
+                  sweeps=sweeps)
+    write_ladder(directory)
+
+
+def write_ladder(directory):
+    lines = ["rung,parameter,value,solver,status,residual_m_per_s"]
+    for rung, parameter, values in (("stack", "mass_ratio", (1, 10, 100, 1000)), ("stiff", "cfm", (1e-4, 1e-8,
+                                                                                                   0))):
+        for index, value in enumerate(values):
+            for solver, held in (("exact", 9), ("pgs", 1)):
+                status = "ok" if index < held else "not_converged"
+                lines.append(f"{rung},{parameter},{value},{solver},{status},1e-12")
+    (directory / "ladder.csv").write_text("\n".join(lines) + "\n")

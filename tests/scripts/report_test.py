@@ -1,0 +1,288 @@
+"""scripts/report on a tiny tree: what it writes, what it makes of missing and damaged data."""
+import base64
+import pathlib
+import re
+import shutil
+import tempfile
+import unittest
+
+import matplotlib.image
+from report_data import PAPER, manifest, report_row, rows_of, whole_system, write_run, write_tree
+from synthetic import run_script, write_manifest, write_steps
+
+from cleave_results import NO_PARTITIONER, PARTITIONERS
+from figures import data, solver_groups, style, trade_off, tree
+from figures.registry import FIGURES
+from figures.tables import scene_tables
+from figures.tree import NoData
+from figures.verdicts import judge_all
+
+
+class TreeTest(unittest.TestCase):
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.directory = pathlib.Path(scratch.name)
+
+    def report(self, *arguments, code=0):
+        """(page, what was said on stderr)"""
+        result = run_script("report", self.directory, *arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
+        self.assertNotIn("Warning", result.stderr)
+        page = self.directory / "report.html"
+        return page.read_text(encoding="utf-8") if page.exists() else "", result.stderr
+
+    def assert_has(self, page, *texts):
+        """As assertIn, without printing the page."""
+        for text in texts:
+            self.assertTrue(text in page, f"not in the page: {text[:200]}")
+
+    def drawn(self):
+        """{name of figure: caption, or the NoData} without going through files."""
+        loaded, results = data.load(self.directory, "schur"), {}
+        for figure in FIGURES:
+            try:
+                picture, results[figure.name] = figure.draw(loaded)
+                style.pyplot.close(picture)
+            except NoData as gap:
+                results[figure.name] = gap
+        return results
+
+
+class WholeTreeTest(TreeTest):
+
+    def test_everything_is_drawn_and_the_page_needs_nothing_else(self):
+        write_tree(self.directory)
+        page, said = self.report()
+        for figure in FIGURES:
+            for ending in ("pdf", "png"):
+                path = self.directory / "figures" / f"{figure.name}.{ending}"
+                self.assertGreater(path.stat().st_size, 5000, path)
+            picture = matplotlib.image.imread(path)
+            self.assertGreater(picture.std(), 0.03, path)
+            self.assert_has(page, base64.b64encode(path.read_bytes()).decode())
+        targets = re.findall(r'(?:src|href)="([^"]*)"', page) + re.findall(r"url\(([^)]*)\)", page)
+        self.assertGreater(len(targets), 20)
+        self.assertEqual([target for target in targets if not target.startswith(("data:", "#"))], [])
+        self.assertEqual(page.count('class="missing"'), 3)  # Figures 1 and 2 and the replay
+        self.assertEqual(said.count("no data"), 3)
+        self.assertIn("no motion recorded", said)
+
+    def test_every_caption_names_steps_and_machine(self):
+        write_tree(self.directory)
+        for name, caption in self.drawn().items():
+            self.assertIsInstance(caption, str, name)
+            if name not in ("ladder",):
+                self.assertRegex(caption, r"Some_CPU, 6 cores, 1 thread", name)
+            if name not in ("ladder", "speed_up"):
+                self.assertRegex(caption, r"Measured steps: .* 9[.,]", name)
+
+    def test_the_same_data_give_the_same_files(self):
+        write_run(self.directory / "log_tower", rows_of("log_tower"))
+        contents = []
+        for name in ("a", "b"):
+            picture, _ = FIGURES[0].draw(data.load(self.directory, "schur"))
+            contents.append([path.read_bytes() for path in style.save(picture, self.directory / name, "x")])
+        self.assertEqual(contents[0], contents[1])
+
+    def test_table_1_is_there_in_every_format(self):
+        for scene in ("rock_pile", "log_tower"):
+            write_run(self.directory / scene, rows_of(scene))
+        page, _ = self.report()
+        table = page[page.index('<table class="numbers">'):]
+        self.assertEqual(table[:table.index("</table>")].count('class="chip"'), 15)
+        self.assertIn("\\toprule", (self.directory / "figures" / "table1.tex").read_text())
+        self.assertIn("mix,fm", (self.directory / "figures" / "table1.csv").read_text())
+        self.assertIn("| mix fm |", (self.directory / "figures" / "table1.md").read_text())
+
+    def test_rendered_figures_and_film_strips_are_embedded(self):
+        write_run(self.directory / "rock_pile", rows_of("rock_pile"))
+        self.report()
+        source = self.directory / "figures" / "figure3.png"
+        for name in ("figure1", "figure2", "film_strip"):
+            shutil.copy(source, source.with_name(f"{name}.png"))
+        source.with_name("figure1.txt").write_text("Told by the renderer & its file.\n")
+        page, said = self.report()
+        self.assertEqual(page.count(base64.b64encode(source.read_bytes()).decode()), 4)
+        self.assert_has(page, "Told by the renderer &amp; its file.")
+        self.assertNotIn("no motion recorded", said)
+
+
+class NewcomersTest(TreeTest):
+
+    def test_new_partitioners_refiners_solvers_and_stages_appear_by_themselves(self):
+        rows = rows_of("rock_pile", ("mindp", "mix", "metis"), ("none", "fm", "tabu"))
+        for row in rows:
+            row["t_s_wait_ms"] = 1.0
+        write_run(self.directory / "a", rows)
+        write_run(self.directory / "b", whole_system("quantum", t_s_ms=1))
+        loaded = data.load(self.directory, "schur")
+        parts, = solver_groups.groups(loaded.blocks).values()
+        self.assertEqual(set(trade_off.points(parts)["label"]), {"schur", "quantum"})
+        for name in ("figure3", "trade_off", "stages", "interface_cost", "speed_up"):
+            self.assertIsInstance(self.drawn()[name], str, name)
+        page, _ = self.report()
+        self.assert_has(page, "metis tabu")
+        figure = next(entry for entry in FIGURES if entry.name == "stages").draw(loaded)[0]
+        self.assertIn("wait", [text.get_text() for text in figure.legends[0].get_texts()])
+
+    def test_one_colour_a_partitioner_and_one_look_a_refiner(self):
+        names = [*PARTITIONERS, NO_PARTITIONER, "metis"]
+        colors = [style.color(name) for name in names]
+        self.assertEqual(len(set(colors)), len(names))
+        self.assertEqual(style.color("metis"), style.color("metis"))
+        hatches = [style.bar_look("mix", name)["hatch"] for name in ("none", "kl", "fm", "tabu")]
+        markers = [style.line_look("mix", name)["marker"] for name in ("none", "kl", "fm", "tabu")]
+        self.assertEqual((len(set(hatches)), len(set(markers))), (4, 4))
+
+    def test_solvers_that_differ_in_an_option_are_told_apart(self):
+        for sweeps in (5, 50):
+            write_run(self.directory / str(sweeps), whole_system("pgs"), sweeps=sweeps)
+        parts, = solver_groups.groups(data.load(self.directory, "schur").blocks).values()
+        self.assertEqual(set(trade_off.points(parts)["label"]), {"pgs", "pgs, sweeps 50"})
+
+    def test_runs_of_different_setups_are_not_mixed(self):
+        write_run(self.directory / "a", rows_of("rock_pile"))
+        write_run(self.directory / "b", rows_of("rock_pile", ("mix",), t_s_ms=1e6), cfm=1e-3)
+        write_run(self.directory / "c", rows_of("rock_pile", ("mix",), t_s_ms=1e6))
+        write_run(self.directory / "d", rows_of("rock_pile", t_s_ms=1e6), sweeps=500)
+        loaded = data.load(self.directory, "schur")
+        self.assertEqual([part.experiment.name for part in loaded.main["rock_pile"]], ["a"])
+        self.assertIn("of another setup or with fewer combinations: b, c, d", " ".join(loaded.messages))
+
+
+class DamageTest(TreeTest):
+
+    def write_small(self, change):
+        rows = rows_of("log_tower", ("mindp", "mix"), ("none", "fm"), (9, 19))
+        rows += rows_of("log_tower", ("-",), ("-",), (9, 19), solver="exact", kernel="auto")
+        for row in rows:
+            change(row)
+        write_steps(self.directory / "a", rows)
+        write_manifest(self.directory / "a", **manifest("log_tower"))
+
+    def assert_made(self):
+        """Everything is drawn, judged or a gap; what is neither raises."""
+        self.drawn()
+        loaded = data.load(self.directory, "schur")
+        judge_all(loaded, PAPER)
+        return loaded
+
+    def test_without_any_one_column_there_is_a_report(self):
+        for missing in report_row("rock_pile", 9, "mix", "fm"):
+            with self.subTest(missing=missing):
+                self.write_small(lambda row, name=missing: row.pop(name))
+                tables, faults = scene_tables(self.assert_made())
+                self.assertEqual(len(tables) + len(faults), 0 if missing in tree.REQUIRED else 1)
+
+    def test_a_column_of_nonsense_is_as_good_as_none(self):
+        for name in ("t_s_ms", "interface_rows", "factor_mflop_local", "t_s_model_p1_ms", "threads", "step"):
+            for value in ("garbage", "inf", "0"):
+                with self.subTest(name=name, value=value):
+                    self.write_small(lambda row, name=name, value=value: row.update({name: value}))
+                    self.assert_made()
+
+    def test_a_manifest_of_nonsense_is_as_good_as_none(self):
+        self.write_small(lambda row: None)
+        for entry in ("options", "build", "machine", "state"):
+            for value in (None, [], "x", {"git_hash": 3, "skip": [], "threads": None}):
+                with self.subTest(entry=entry, value=value):
+                    write_manifest(self.directory / "a", **dict(manifest("log_tower"), **{entry: value}))
+                    loaded = data.load(self.directory, "schur")
+                    self.assertIn("log_tower", loaded.main)
+                    self.assertIn("Machine", FIGURES[0].draw(loaded)[1])
+
+    def test_a_missing_column_is_named_in_the_gap(self):
+        rows = rows_of("rock_pile")
+        for row in rows:
+            del row["interface_rows"]
+        write_run(self.directory / "rock_pile", rows)
+        write_run(self.directory / "log_tower", rows_of("log_tower"))
+        caption = self.drawn()["interface_cost"]
+        self.assertIn("No data: Rock Pile, column interface_rows is missing.", caption)
+        shutil.rmtree(self.directory / "log_tower")
+        page, said = self.report()
+        self.assertIn("The price of interface rows: no data: Rock Pile, column interface_rows is missing",
+                      said)
+        self.assert_has(page, '<div class="missing">no data: Rock Pile, column interface_rows')
+        self.assertFalse((self.directory / "figures" / "interface_cost.png").exists())
+
+    def test_damaged_files_become_messages(self):
+        write_run(self.directory / "good", rows_of("rock_pile"))
+        texts = {
+            "empty": "",
+            "header": "scene,step\n",
+            "words": "no table\n",
+            "binary": "\x00\xff\x00",
+            "no_rows": (self.directory / "good" / "steps.csv").read_text().splitlines()[0] + "\n"
+        }
+        for name, text in texts.items():
+            (self.directory / name).mkdir()
+            (self.directory / name / "steps.csv").write_bytes(text.encode("latin-1"))
+        half = write_steps(self.directory / "half", rows_of("log_tower"))
+        half.write_text(half.read_text()[:-20])
+        write_manifest(self.directory / "half", **dict(manifest("log_tower"), state="running"))
+        write_steps(self.directory / "bad_manifest", rows_of("chain_drop", steps=(9,)))
+        (self.directory / "bad_manifest" / "manifest.json").write_text("{")
+        (self.directory / "ladder.csv").write_text("rung,value\n1,2\n")
+        page, said = self.report()
+        for words in ("empty/steps.csv: empty file", "header/steps.csv: missing column partitioner",
+                      "words/steps.csv: missing column scene", "binary/steps.csv: not a text file",
+                      "no_rows/steps.csv: no rows", "half/steps.csv: the last line was not finished",
+                      "the state of the run is running", "bad_manifest/manifest.json",
+                      "ladder.csv: missing column parameter"):
+            self.assertIn(words, said)
+            self.assert_has(page, words)
+        self.assertTrue((self.directory / "figures" / "figure3.png").exists())
+
+    def test_a_failed_cell_leaves_a_marked_gap(self):
+        rows = rows_of("log_tower")
+        for row in rows:
+            if (row["partitioner"], row["refiner"]) == ("mindp", "kl"):
+                row.update(status="diverged", t_s_ms="nan")
+            if (row["partitioner"], row["refiner"], row["step"]) == ("mindp", "fm", 19):
+                row.update(status="not_converged")
+        write_run(self.directory / "log_tower", rows)
+        loaded = data.load(self.directory, "schur")
+        figure = FIGURES[0].draw(loaded)[0]
+        self.assertIn("no step ok", [text.get_text() for text in figure.axes[0].texts])
+        self.assertIn("Crosses: steps without a row that is ok", self.drawn()["figure5"])
+        page, said = self.report()
+        self.assertIn(
+            "10 rows of 135 not ok: 9 diverged by schur mindp kl, 1 not_converged by schur mindp fm", said)
+        self.assert_has(page, "Log Tower, mindp kl: 9 of 9 steps failed.")
+        self.assert_has(page, '<span class="gap">no data</span>')
+
+    def test_a_value_that_is_no_number_is_named_and_left_out(self):
+        rows = rows_of("rock_pile")
+        rows[3]["t_s_ms"] = "fast"
+        write_run(self.directory / "rock_pile", rows)
+        page, said = self.report()
+        self.assertIn("line 5: column t_s_ms is 'fast', expected a number; 1 such values are left out", said)
+        self.assert_has(page, "no data: Rock Pile, ")  # Table 1 averages no scene with such a value
+        self.assertTrue((self.directory / "figures" / "figure3.png").exists())
+
+    def test_steps_before_skip_are_left_out(self):
+        write_run(self.directory / "rock_pile", rows_of("rock_pile"), skip=20)
+        loaded = data.load(self.directory, "schur")
+        self.assertEqual(sorted(set(loaded.tree.experiments[0].rows["step"])), list(range(29, 90, 10)))
+        self.assertIn("30 rows before --skip are left out", loaded.messages[0])
+
+    def test_without_the_solver_everything_is_a_gap(self):
+        write_run(self.directory / "rock_pile", rows_of("rock_pile"))
+        _, said = self.report("--solver", "unheard_of")
+        self.assertIn("Figure 3: no data: no rows of the chosen solver in any scene", said)
+        self.assertIn("Table 1: no data: no rows of solver unheard_of", said)
+
+    def test_bad_input_is_one_line(self):
+        for directory, words in (("nowhere", "no such directory"), (".", "neither steps.csv nor ladder.csv")):
+            result = run_script("report", self.directory / directory)
+            self.assertEqual((result.returncode, len(result.stderr.splitlines())), (1, 1), result.stderr)
+            self.assertIn(words, result.stderr)
+        self.assertEqual(list(self.directory.iterdir()), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

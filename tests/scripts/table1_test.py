@@ -1,0 +1,247 @@
+"""Table 1 from made-up results: means, marks, ratios, failed rows, gaps and error messages."""
+import csv
+import io
+import pathlib
+import re
+import tempfile
+import unittest
+
+from synthetic import COMBINATIONS, good_row, matrix, run_script, write_manifest, write_matrix, write_steps
+
+from cleave_results import SCENES, load_paper_table1
+
+MANIFEST = {
+    "options": {
+        "threads": 2
+    },
+    "build": {
+        "git_hash": "0123456789abcdef",
+        "git_dirty": "true"
+    },
+    "machine": {
+        "cpu_model": "Some_CPU @ 3 GHz",
+        "cores": 6
+    }
+}
+MACHINE = "Ours: Some_CPU @ 3 GHz, 6 cores, 2 threads, commit 0123456789 with local changes."
+
+
+class Table1Test(unittest.TestCase):
+
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.directory = pathlib.Path(self.scratch.name)
+
+    def table(self, *arguments, code=0):
+        result = run_script("table1", self.directory, *arguments)
+        self.assertEqual(result.returncode, code, result.stderr)
+        self.assertNotIn("Traceback", result.stderr)
+        return result.stdout if code == 0 else result.stderr
+
+    def cells(self, *arguments):
+        text = self.table("--format", "csv", *arguments)
+        lines = [line for line in text.splitlines() if not line.startswith("#")]
+        return {(row["scene"], row["partitioner"], row["refiner"]): row for row in csv.DictReader(lines)}
+
+
+class MeansTest(Table1Test):
+
+    def test_mean_ratio_and_marks(self):
+        rows = [
+            dict(good_row("rock_pile", 0, "mindp", "none"), t_s_ms=20, t_pr_ms=1),
+            dict(good_row("rock_pile", 50, "mindp", "none"), t_s_ms=40, t_pr_ms=2),
+            dict(good_row("rock_pile", 0, "mix", "fm"), t_s_ms=27, t_pr_ms=4),
+            dict(good_row("rock_pile", 50, "mix", "fm"), t_s_ms=30, t_pr_ms=4)
+        ]
+        write_steps(self.directory, rows)
+        cells = self.cells()
+        self.assertEqual(len(cells), 15)
+        cell = cells["rock_pile", "mindp", "none"]
+        self.assertEqual([float(cell[name]) for name in ("t_s_ms", "t_pr_ms", "total_ms")], [30, 1.5, 31.5])
+        self.assertEqual([float(cell[name]) for name in ("paper_t_s_ms", "paper_t_pr_ms")], [144.5, 1.2])
+        self.assertAlmostEqual(float(cell["ratio_t_s"]), 30 / 144.5, 5)
+        self.assertAlmostEqual(float(cell["ratio_t_pr"]), 1.5 / 1.2, 5)
+        self.assertAlmostEqual(float(cell["ratio_total"]), 31.5 / 145.7, 5)
+        # mix fm solves faster, but its total is greater.
+        self.assertEqual([name for name in cells if cells[name]["lowest"] == "1"],
+                         [("rock_pile", "mindp", "none")])
+        self.assertEqual([name for name in cells if cells[name]["paper_lowest"] == "1"],
+                         [("rock_pile", "mix", "fm")])
+
+    def test_all_four_scenes_in_the_papers_order(self):
+        write_matrix(self.directory)
+        cells = self.cells()
+        self.assertEqual(list(cells), [(scene, *names) for scene in SCENES for names in COMBINATIONS])
+        paper = load_paper_table1()
+        for key, cell in cells.items():
+            self.assertEqual((float(cell["paper_t_s_ms"]), float(cell["paper_t_pr_ms"])), paper[key])
+            self.assertEqual(float(cell["t_s_ms"]), 10 + COMBINATIONS.index(key[1:]))
+            self.assertEqual(cell["steps_ok"], "10")
+
+    def test_failed_rows_are_counted_not_averaged_and_cannot_win(self):
+        rows = matrix("rock_pile", [0, 50])
+        rows[15].update(status="not_converged", t_s_ms="nan")  # mindp none, the fastest, at step 50
+        write_steps(self.directory, rows)
+        cells = self.cells()
+        cell = cells["rock_pile", "mindp", "none"]
+        self.assertEqual((cell["t_s_ms"], cell["steps_ok"], cell["steps_failed"], cell["lowest"]),
+                         ("10", "1", "1", "0"))
+        self.assertEqual(cells["rock_pile", "mindp", "kl"]["lowest"], "1")
+        text = self.table()
+        self.assertIn("1 failed row (status not ok)", text)
+        self.assertIn("! 1 of 2 steps failed: mindp none", text)
+
+    def test_a_combination_without_rows_is_a_gap(self):
+        write_steps(self.directory,
+                    [row for row in matrix("rock_pile", [0, 50]) if row["partitioner"] != "mr"])
+        cell = self.cells()["rock_pile", "mr", "kl"]
+        self.assertEqual((cell["t_s_ms"], cell["ratio_total"], cell["steps_missing"]), ("", "", "2"))
+        line = next(line for line in self.table().splitlines() if line.startswith("mr     kl"))
+        self.assertRegex(line, r"\|\s+-\s+-\s+- .*!$")
+        self.assertIn("! 2 of 2 steps missing: mr none, mr kl, mr fm", self.table())
+
+    def test_rows_of_a_solver_without_partition_are_left_out(self):
+        write_steps(
+            self.directory,
+            matrix("rock_pile", [0]) + [
+                dict(good_row("rock_pile", 0, "mix", "fm"),
+                     partitioner="-",
+                     refiner="-",
+                     solver="dense",
+                     t_s_ms=1)
+            ])
+        self.assertEqual(len(self.cells()), 15)
+
+    def test_a_scene_and_a_partitioner_the_paper_does_not_have(self):
+        write_steps(self.directory, [
+            dict(row,
+                 scene="ladder",
+                 partitioner="metis" if row["partitioner"] == "mix" else row["partitioner"])
+            for row in matrix("rock_pile", [0])
+        ])
+        cells = self.cells()
+        self.assertEqual(
+            (cells["ladder", "metis", "fm"]["t_s_ms"], cells["ladder", "metis", "fm"]["paper_t_s_ms"],
+             cells["ladder", "mix", "fm"]["t_s_ms"]), ("24", "", ""))
+
+
+class ChoiceTest(Table1Test):
+
+    def test_mixed_rows_are_refused_until_one_kind_is_chosen(self):
+        write_steps(
+            self.directory,
+            matrix("rock_pile", [0]) + [dict(row, threads=1, t_s_ms=99) for row in matrix("rock_pile", [0])])
+        self.assertIn("mix threads 1, 2; choose one with --where threads=1", self.table(code=1))
+        self.assertEqual(self.cells("--where", "threads=1")["rock_pile", "bfs", "kl"]["t_s_ms"], "99")
+        self.assertIn("no measured rows", self.table("--where", "threads=8", code=1))
+        self.assertIn("no column color", self.table("--where", "color=red", code=1))
+
+    def test_a_step_given_twice_is_refused(self):
+        for name in ("a", "b"):
+            write_steps(self.directory / name, matrix("rock_pile", [0]))
+        self.assertRegex(self.table(code=1), r"b/steps.csv, line 2: step 0 of rock_pile.*a/steps.csv, line 2")
+
+    def test_seeds_are_averaged(self):
+        for seed in (1, 2):
+            write_steps(self.directory / str(seed),
+                        [dict(row, seed=seed, t_s_ms=seed) for row in matrix("rock_pile", [0])])
+        cell = self.cells()["rock_pile", "mr", "fm"]
+        self.assertEqual((cell["t_s_ms"], cell["steps_ok"]), ("1.5", "2"))
+
+
+class MessageTest(Table1Test):
+
+    def test_bad_input_is_one_line(self):
+        path = write_steps(self.directory, matrix("rock_pile", [0]))
+        whole = path.read_text()
+        for text, words in (("", "empty file"), (whole.replace("t_pr_ms",
+                                                               "t_xx_ms"), "missing column t_pr_ms"),
+                            (whole.splitlines()[0] + "\n",
+                             "no measured rows"), (whole.replace(",0.125,",
+                                                                 ",nan,"), "status ok, but t_pr_ms is 'nan'"),
+                            (whole.replace(",0.125,", ",fast,"), "column t_pr_ms is 'fast'")):
+            with self.subTest(words=words):
+                path.write_text(text)
+                error = self.table(code=1)
+                self.assertIn(words, error)
+                self.assertEqual(len(error.splitlines()), 1)
+
+    def test_an_unfinished_last_line_is_reported(self):
+        path = write_steps(self.directory, matrix("rock_pile", [0, 50]))
+        path.write_text(path.read_text()[:-5])
+        self.assertIn("steps.csv: the last line was not finished", self.table())
+        self.assertEqual(self.cells()["rock_pile", "mix", "fm"]["steps_ok"], "1")
+
+    def test_an_interrupted_run_is_reported(self):
+        write_steps(self.directory, matrix("rock_pile", [0]))
+        for state, words in (("interrupted", "the state of the run is interrupted"), ("complete", "")):
+            write_manifest(self.directory, state=state)
+            self.assertIn(words, self.table())
+        self.assertNotIn("state of the run", self.table())
+
+    def test_wrong_options_exit_with_one(self):
+        for arguments in (["--format", "xml"], ["--where", "threads"], ["--unknown"]):
+            self.assertIn("table1: ", self.table(*arguments, code=1))
+
+
+class FormatTest(Table1Test):
+
+    def setUp(self):
+        super().setUp()
+        write_matrix(self.directory)
+
+    def test_text_names_both_machines_marks_the_lowest_and_fits(self):
+        for scene in SCENES:
+            write_manifest(self.directory / scene, **MANIFEST)
+        text = self.table()
+        self.assertIn("8 cores at 2.4 GHz", text)
+        self.assertIn(MACHINE, text)
+        self.assertEqual(text.count("Ours: "), 1)
+        self.assertLessEqual(max(map(len, text.splitlines())), 110)
+        block = text[text.index("Rock Pile: 10 measured steps, solver schur, 2 threads"):].splitlines()[3:18]
+        self.assertEqual([tuple(line[:14].split()) for line in block], COMBINATIONS)
+        self.assertEqual([index for index, line in enumerate(block) if "*" in line], [0, 14])
+        self.assertRegex(
+            block[0], r"10\.000 +0\.125 +10\.125\* \| +144\.5 +1\.2 +145\.7  \| +0\.0692 +0\.104 +0\.0695")
+        self.assertEqual(len({len(line) for line in block}), 1)
+
+    def test_without_manifest_the_machine_is_unknown(self):
+        self.assertIn("unknown", self.table())
+
+    def test_scenes_without_rows_are_named(self):
+        result = run_script("table1", self.directory / "rock_pile")
+        self.assertIn("No rows of chain_drop, log_tower, large_rock_pile", result.stdout)
+
+    def test_markdown_has_a_row_a_combination_and_bold_marks(self):
+        text = self.table("--format", "markdown")
+        rows = [line for line in text.splitlines() if line.startswith("|")]
+        self.assertEqual({line.count("|") for line in rows}, {6})
+        self.assertEqual(len(rows), 17)
+        self.assertEqual(text.count("**"), 2 * 8)  # in every scene our lowest and the paper's
+        self.assertIn("| mindp none | **10.00 + 0.125**", text)
+
+    def test_latex_is_balanced(self):
+        text = self.table("--format", "latex")
+        columns = 1 + 3 * 4
+        self.assertIn("{l" + "rrr" * 4 + "}", text)
+        body = text[text.index("\\midrule"):text.index("\\bottomrule")].splitlines()[1:]
+        self.assertEqual(len(body), 15)
+        self.assertEqual({line.count("&") for line in body}, {columns - 1})
+        self.assertTrue(all(line.endswith("\\\\") for line in body))
+        self.assertEqual(text.count("{"), text.count("}"))
+        self.assertEqual(re.findall(r"(?<!\\)[_#%](?!pr|s\$|\{)", "\n".join(text.splitlines()[1:])), [])
+        for mark in ("\\toprule", "\\begin{tabular}", "\\end{tabular}", "\\textbf{10.00 + 0.125}"):
+            self.assertIn(mark, text)
+
+    def test_csv_reads_back(self):
+        self.assertEqual(
+            len(
+                list(
+                    csv.DictReader(
+                        io.StringIO("".join(line for line in self.table("--format", "csv").splitlines(True)
+                                            if line[0] != "#"))))), 60)
+
+
+if __name__ == "__main__":
+    unittest.main()

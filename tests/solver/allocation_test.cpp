@@ -1,0 +1,68 @@
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "solver/step_solver.h"
+#include "tests/solver/allocation_counter.h"
+#include "tests/solver/problem_makers.h"
+#include "tests/solver/solver_checks.h"
+
+namespace cleave {
+namespace {
+
+TEST(AllocationCountTest, CountsEveryFormOfNew) {
+  long count = 0;
+  {
+    const AllocationCount allocations;
+    auto single = std::make_unique<int>(1);
+    std::vector<double> many(100);
+    struct alignas(64) Wide {
+      double values[8];
+    };
+    auto wide = std::make_unique<Wide>();
+    asm volatile("" ::"g"(single.get()), "g"(many.data()), "g"(wide.get()) : "memory");  // keeps the calls
+    count = allocations.count();
+  }
+  EXPECT_EQ(count, 3);
+}
+
+TEST(AllocationCountTest, IsSwitchedOff) {
+  std::vector<double> before(10);
+  const AllocationCount allocations;
+  EXPECT_EQ(allocations.count(), 0);
+}
+
+class AllocationTest : public testing::TestWithParam<const char*> {};
+
+// Both problems go through one solver object each: the structure is new to it once.
+TEST_P(AllocationTest, SecondSolveOfOneStructureAllocatesNothing) {
+  const StepProblem pile = make_pile(5, {.columns = 3, .rows = 3, .layers = 3});
+  const StepProblem chain = make_chain(5, {.links = 30, .extra_joints = 5, .closed = true});
+  for (const StepProblem& problem : {pile, chain}) {
+    const std::vector<int> parts = sliced_parts(problem.body_count(), 4);
+    SolveOptions options;
+    options.reuse_analysis = true;
+    const auto solver = make_step_solver(GetParam(), options);
+    Solution first = cold_start(problem);
+    ASSERT_TRUE(is_exact(problem, solver->solve(problem, parts, first), first));
+
+    Solution second = first;
+    std::fill(second.impulse.begin(), second.impulse.end(), 0);
+    SolveSummary summary;
+    long count = -1;
+    {
+      const AllocationCount allocations;
+      summary = solver->solve(problem, parts, second);
+      count = allocations.count();
+    }
+    EXPECT_EQ(count, 0) << problem.row_count() << " rows";
+    EXPECT_TRUE(is_exact(problem, summary, second));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Solvers, AllocationTest, testing::Values("monolithic", "schur"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace cleave

@@ -1,0 +1,104 @@
+#include "solver/stage_clock.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "tests/solver/seeded_random.h"
+
+namespace cleave {
+namespace {
+
+double makespan(std::vector<double> tasks, int workers) {
+  std::sort(tasks.rbegin(), tasks.rend());
+  std::vector<double> scratch;
+  return makespan_ms(tasks, workers, scratch);
+}
+
+void spin_ms(double milliseconds) {
+  const auto begin = StageClock::Clock::now();
+  while (std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin).count() < milliseconds) {
+  }
+}
+
+TEST(MakespanTest, GivesTheLongestTaskFirstSchedule) {
+  EXPECT_EQ(makespan({}, 3), 0);
+  EXPECT_EQ(makespan({4}, 1), 4);
+  EXPECT_EQ(makespan({4}, 8), 4);
+  EXPECT_EQ(makespan({1, 2, 3, 4}, 1), 10);
+  EXPECT_EQ(makespan({1, 2, 3, 4}, 2), 5);              // 4+1, 3+2
+  EXPECT_EQ(makespan({5, 4, 3, 3, 3}, 2), 10);          // 5+3, 4+3+3: not the best possible 9
+  EXPECT_EQ(makespan({2, 14, 4, 16, 6, 5, 7}, 3), 18);  // 16+2, 14+4, 7+6+5
+  EXPECT_EQ(makespan({1, 1, 1, 1, 1}, 4), 2);
+}
+
+TEST(MakespanTest, LiesBetweenTheBoundsOfEverySchedule) {
+  for (int seed = 0; seed < 200; ++seed) {
+    SeededRandom random(seed);
+    std::vector<double> tasks(random.integer(1, 40));
+    for (double& task : tasks) task = random.log_uniform(1e-3, 10);
+    const double sum = std::accumulate(tasks.begin(), tasks.end(), 0.0);
+    const double longest = *std::max_element(tasks.begin(), tasks.end());
+    EXPECT_NEAR(makespan(tasks, 1), sum, 1e-12 * sum) << "seed " << seed;
+    double before = sum * (1 + 1e-12);
+    for (const int workers : {2, 4, 8, 16}) {
+      const double found = makespan(tasks, workers);
+      const double least = std::max(longest, sum / workers);
+      EXPECT_GE(found, least * (1 - 1e-12)) << "seed " << seed;
+      EXPECT_LE(found, sum / workers + longest * (1 + 1e-12)) << "seed " << seed;
+      EXPECT_LE(found, before) << "seed " << seed;
+      before = found;
+    }
+  }
+}
+
+TEST(StageClockTest, ModelsParallelStagesAndKeepsSerialTime) {
+  StageClock clock;
+  clock.start();
+  spin_ms(12);
+  clock.add(Stage::factor_local, 10);
+  clock.add_tasks(std::vector<double>{1, 2, 3, 4});  // makespans 10, 5, 4, 4, 4
+  clock.add_tasks(std::vector<double>{1, 1});        // makespans 2, 1, 1, 1, 1
+  const StageTimes times = clock.stop();
+  EXPECT_GE(times.total_ms, 12);
+  EXPECT_NEAR(times.model_ms[0], times.total_ms, 1e-9);
+  EXPECT_NEAR(times.model_ms[0] - times.model_ms[1], 12 - 6, 1e-9);
+  EXPECT_NEAR(times.model_ms[0] - times.model_ms[2], 12 - 5, 1e-9);
+  EXPECT_NEAR(times.model_ms[0] - times.model_ms[4], 12 - 5, 1e-9);
+}
+
+TEST(StageClockTest, AddsUpStagesAndStartsAfresh) {
+  StageClock clock;
+  clock.start();
+  clock.add(Stage::solve, 1);
+  clock.add(Stage::solve, 2);
+  clock.add(Stage::check, 4);
+  const StageTimes first = clock.stop();
+  EXPECT_EQ(first.stage_ms[static_cast<std::size_t>(Stage::solve)], 3);
+  EXPECT_EQ(first.stage_ms[static_cast<std::size_t>(Stage::check)], 4);
+  EXPECT_EQ(first.stage_ms[static_cast<std::size_t>(Stage::analyze)], 0);
+
+  clock.start();
+  spin_ms(1);
+  clock.add_tasks(std::vector<double>{0.5, 0.25});
+  const StageTimes second = clock.stop();
+  EXPECT_EQ(second.stage_ms[static_cast<std::size_t>(Stage::solve)], 0);
+  EXPECT_NEAR(second.model_ms[0] - second.model_ms[1], 0.25, 1e-9);
+}
+
+TEST(StageClockTest, TimerAddsTheTimeOfItsScope) {
+  StageClock clock;
+  clock.start();
+  {
+    const StageTimer timer(clock, Stage::refine);
+    spin_ms(2);
+  }
+  const StageTimes times = clock.stop();
+  const double refine_ms = times.stage_ms[static_cast<std::size_t>(Stage::refine)];
+  EXPECT_GE(refine_ms, 2);
+  EXPECT_LE(refine_ms, times.total_ms);
+}
+
+}  // namespace
+}  // namespace cleave

@@ -1,0 +1,131 @@
+#include "solver/step_problem.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "tests/solver/problem_makers.h"
+
+namespace cleave {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(FindProblemErrorTest, AcceptsWhatTheMakersMake) {
+  for (int seed = 0; seed < 300; ++seed) {
+    EXPECT_EQ(find_problem_error(make_small_problem(seed)), "") << "seed " << seed;
+  }
+  EXPECT_EQ(find_problem_error(make_pile(1, {})), "");
+  EXPECT_EQ(find_problem_error(make_chain(1, {})), "");
+}
+
+TEST(FindProblemErrorTest, AcceptsBodiesWithoutRowsAndNothingAtAll) {
+  StepProblem problem;
+  problem.h_s = kTestStep_s;
+  EXPECT_EQ(find_problem_error(problem), "");
+  append_body(problem, 1, {1, 1, 1}, {});
+  EXPECT_EQ(find_problem_error(problem), "");
+}
+
+TEST(FindProblemErrorTest, AcceptsRoundingErrorsOfRotatedThinBodies) {
+  StepProblem problem = make_pile(1, {});
+  // A rod of inertia (1e-6, 1, 1) turned by 45 degrees about z, with the last bit of one entry changed.
+  const double mean = (1e-6 + 1) / 2, half = (1e-6 - 1) / 2;
+  problem.mass[21] = problem.mass[28] = mean;
+  problem.mass[22] = half;
+  problem.mass[27] = half * (1 + 4e-16);
+  problem.mass[35] = 1;
+  EXPECT_EQ(find_problem_error(problem), "");
+}
+
+// Row 0 of the pile is a normal row, rows 1 and 2 are its friction rows, row 3 is normal again.
+struct Damage {
+  const char* name;
+  std::function<void(StepProblem&)> apply;
+  const char* expected;  // start of the message
+};
+
+const Damage kDamages[] = {
+    {"StepZero", [](StepProblem& p) { p.h_s = 0; }, "h_s = 0, allowed"},
+    {"StepNan", [](StepProblem& p) { p.h_s = kNan; }, "h_s = nan, allowed"},
+    {"ShapeVelocity", [](StepProblem& p) { p.free_velocity.pop_back(); },
+     "size of free_velocity = 161, allowed"},
+    {"ShapeMass", [](StepProblem& p) { p.mass.pop_back(); },
+     "size of mass = 971, allowed: 972 (36 for each of 27"},
+    {"ShapeRhs", [](StepProblem& p) { p.rhs.pop_back(); }, "size of row_body = "},
+    {"ShapeRowBody", [](StepProblem& p) { p.row_body.pop_back(); }, "size of row_body = "},
+    {"ShapeJacobian", [](StepProblem& p) { p.jacobian.push_back(0); }, "size of jacobian = "},
+    {"ShapeCompliance", [](StepProblem& p) { p.compliance.clear(); }, "size of compliance = 0, allowed"},
+    {"ShapeLower", [](StepProblem& p) { p.lower.pop_back(); }, "size of lower = "},
+    {"ShapeUpper", [](StepProblem& p) { p.upper.pop_back(); }, "size of upper = "},
+    {"ShapeKind", [](StepProblem& p) { p.row_kind.pop_back(); }, "size of row_kind = "},
+    {"ShapeFrictionRow", [](StepProblem& p) { p.friction_row.pop_back(); }, "size of friction_row = "},
+    {"ShapeMu", [](StepProblem& p) { p.friction_coefficient.pop_back(); }, "size of friction_coefficient = "},
+    {"ShapeConstraint", [](StepProblem& p) { p.row_constraint.pop_back(); }, "size of row_constraint = "},
+    {"ShapePoint", [](StepProblem& p) { p.contact_point.pop_back(); }, "size of contact_point = "},
+    {"ShapeWarm", [](StepProblem& p) { p.warm_impulse.pop_back(); }, "size of warm_impulse = "},
+    {"NanMass", [](StepProblem& p) { p.mass[40] = kNan; }, "mass[40] = nan, allowed: finite"},
+    {"NanVelocity", [](StepProblem& p) { p.free_velocity[7] = kNan; }, "free_velocity[7] = nan, allowed"},
+    {"InfiniteJacobian", [](StepProblem& p) { p.jacobian[13] = kInfinity; }, "jacobian[13] = inf, allowed"},
+    {"NanRhs", [](StepProblem& p) { p.rhs[4] = kNan; }, "rhs[4] = nan, allowed"},
+    {"NanCompliance", [](StepProblem& p) { p.compliance[2] = kNan; }, "compliance[2] = nan, allowed"},
+    {"InfiniteCompliance", [](StepProblem& p) { p.compliance[2] = kInfinity; },
+     "compliance[2] = inf, allowed"},
+    {"NegativeCompliance", [](StepProblem& p) { p.compliance[2] = -1e-9; },
+     "compliance[2] = -1e-09, allowed"},
+    {"NegativeMu", [](StepProblem& p) { p.friction_coefficient[1] = -0.5; },
+     "friction_coefficient[1] = -0.5, allowed"},
+    {"NanPoint", [](StepProblem& p) { p.contact_point[5] = kNan; }, "contact_point[5] = nan, allowed"},
+    {"NanWarm", [](StepProblem& p) { p.warm_impulse[1] = kNan; }, "warm_impulse[1] = nan, allowed"},
+    {"FirstBodyStatic", [](StepProblem& p) { p.row_body[6] = -1; }, "row_body[6] = -1, allowed: 0 to 26"},
+    {"FirstBodyTooLarge", [](StepProblem& p) { p.row_body[6] = 27; }, "row_body[6] = 27, allowed: 0 to 26"},
+    {"SecondBodyTooLarge", [](StepProblem& p) { p.row_body[7] = 27; }, "row_body[7] = 27, allowed: -1"},
+    {"SecondBodyTooSmall", [](StepProblem& p) { p.row_body[7] = -2; }, "row_body[7] = -2, allowed: -1"},
+    {"SameBodyTwice", [](StepProblem& p) { p.row_body[7] = p.row_body[6]; },
+     "row_body[7] = 0, allowed: another body"},
+    {"BoundsCrossed", [](StepProblem& p) { p.lower[1] = 2, p.upper[1] = 1; },
+     "lower[1] = 2, allowed: <= upper"},
+    {"LowerNan", [](StepProblem& p) { p.lower[1] = kNan; }, "lower[1] = nan, allowed: < +infinity"},
+    {"UpperNan", [](StepProblem& p) { p.upper[1] = kNan; }, "upper[1] = nan, allowed: > -infinity"},
+    {"LowerInfinite", [](StepProblem& p) { p.lower[0] = kInfinity; }, "lower[0] = inf, allowed: < +infinity"},
+    {"UpperInfinite", [](StepProblem& p) { p.upper[0] = -kInfinity; },
+     "upper[0] = -inf, allowed: > -infinity"},
+    {"KindUnknown", [](StepProblem& p) { p.row_kind[0] = static_cast<RowKind>(3); },
+     "row_kind[0] = 3, allowed: 0"},
+    {"FrictionWithoutNormal", [](StepProblem& p) { p.friction_row[1] = -1; },
+     "friction_row[1] = -1, allowed: the"},
+    {"FrictionOfFriction", [](StepProblem& p) { p.friction_row[1] = 2; },
+     "friction_row[1] = 2, allowed: the index"},
+    {"FrictionBeyondRows", [](StepProblem& p) { p.friction_row[1] = p.row_count(); }, "friction_row[1] = "},
+    {"NormalWithFrictionRow", [](StepProblem& p) { p.friction_row[3] = 0; },
+     "friction_row[3] = 0, allowed: -1"},
+    {"MassAsymmetric", [](StepProblem& p) { p.mass[36 + 6] = 1e-6; }, "mass[42] = 1e-06, allowed: symmetric"},
+    {"MassZero", [](StepProblem& p) { p.mass[36 + 7] = 0; },
+     "mass[43] = 0, allowed: symmetric positive definite"},
+    {"MassNegative", [](StepProblem& p) { p.mass[36 + 35] = -1; },
+     "mass[71] = -1, allowed: symmetric positive"},
+    {"MassIndefinite", [](StepProblem& p) { p.mass[36 + 1] = p.mass[36 + 6] = 2; },
+     "mass[43] = 1, allowed: symm"},
+    {"MassSingular", [](StepProblem& p) { p.mass[36 + 1] = p.mass[36 + 6] = 1; },
+     "mass[43] = 1, allowed: symm"},
+};
+
+class FindProblemErrorDamageTest : public testing::TestWithParam<Damage> {};
+
+TEST_P(FindProblemErrorDamageTest, NamesArrayIndexValueAndWhatIsAllowed) {
+  StepProblem problem = make_pile(1, {});
+  ASSERT_EQ(problem.friction_row[1], 0);
+  ASSERT_EQ(problem.row_kind[3], RowKind::normal);
+  GetParam().apply(problem);
+  const std::string error = find_problem_error(problem);
+  EXPECT_TRUE(error.starts_with(GetParam().expected)) << error;
+  EXPECT_EQ(error.find('\n'), std::string::npos);
+}
+
+INSTANTIATE_TEST_SUITE_P(Every, FindProblemErrorDamageTest, testing::ValuesIn(kDamages),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+}  // namespace
+}  // namespace cleave
