@@ -51,8 +51,8 @@ export class Viewer {
              '');
     this.frame = 0;
     this.painted = '';
-    this.resize();
     this.section.dataset.state = 'ready';
+    this.resize();
   }
 
   fill(select, names) {
