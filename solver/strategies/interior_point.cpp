@@ -26,6 +26,7 @@ namespace {
 constexpr double kStepFraction = 0.995;  // of the way to the nearest bound
 constexpr double kFixedWidth = 1e-13;    // m/s: rows whose bounds are closer than this are fixed between them
 constexpr int kMostIterations = 100;
+constexpr double kShortStep = 0.1;        // below this a centring direction replaces Mehrotra's
 
 class InteriorPoint : public Strategy {
  public:
@@ -33,9 +34,10 @@ class InteriorPoint : public Strategy {
 
  private:
   void start(SolveState& state);
-  void choose_start(const SolveState& state, int row, double speed);
+  void choose_start(SolveState& state, int row, double speed);
   bool factor(SolveState& state);
-  void solve(SolveState& state, bool corrector);
+  enum class Direction { predictor, corrector, centring };
+  void solve(SolveState& state, Direction direction);
   double largest_step(const SolveState& state) const;
   double measure(double step) const;  // mean of s z after a step along the present direction
   void advance(SolveState& state, double step);
@@ -52,7 +54,7 @@ class InteriorPoint : public Strategy {
   int pairs_ = 0;
 };
 
-void InteriorPoint::choose_start(const SolveState& state, int r, double speed) {
+void InteriorPoint::choose_start(SolveState& state, int r, double speed) {
   const StepProblem& problem = state.step->problem();
   Row& row = rows_[r];
   row = Row{};
@@ -61,13 +63,17 @@ void InteriorPoint::choose_start(const SolveState& state, int r, double speed) {
   if (row.fixed) return;
   row.has_lower = std::isfinite(problem.lower[r]);
   row.has_upper = std::isfinite(problem.upper[r]);
+  // The impulse itself moves inside, so that slacks start feasible even where the bounds are close together.
+  const double margin = std::min(speed / d, 0.25 * (problem.upper[r] - problem.lower[r]));
+  if (row.has_lower) state.impulse[r] = std::max(state.impulse[r], problem.lower[r] + margin);
+  if (row.has_upper) state.impulse[r] = std::min(state.impulse[r], problem.upper[r] - margin);
   if (row.has_lower) {
-    row.s_lo = std::max(state.impulse[r] - problem.lower[r], speed / d);
-    row.z_lo = std::max(w, speed);
+    row.s_lo = state.impulse[r] - problem.lower[r];
+    row.z_lo = std::max(w, 0.0) + speed;
   }
   if (row.has_upper) {
-    row.s_hi = std::max(problem.upper[r] - state.impulse[r], speed / d);
-    row.z_hi = std::max(-w, speed);
+    row.s_hi = problem.upper[r] - state.impulse[r];
+    row.z_hi = std::max(-w, 0.0) + speed;
   }
   pairs_ += row.has_lower + row.has_upper;
 }
@@ -102,9 +108,10 @@ bool InteriorPoint::factor(SolveState& state) {
   return state.kernel->factor(state.weight, state.tasks);
 }
 
-void InteriorPoint::solve(SolveState& state, bool corrector) {
+void InteriorPoint::solve(SolveState& state, Direction direction) {
+  const bool corrector = direction == Direction::corrector;
   const StepProblem& problem = state.step->problem();
-  double target = 0;
+  double target = direction == Direction::centring ? measure(0) : 0.0;
   if (corrector) {
     const double now = measure(0), affine = measure(largest_step(state));
     const double ratio = affine / now;
@@ -219,8 +226,10 @@ bool InteriorPoint::run(SolveState& state) {
     }
     ++state.summary->iterations;
     if (!factor(state)) return false;
-    solve(state, false);
-    solve(state, true);
+    solve(state, Direction::predictor);
+    solve(state, Direction::corrector);
+    // A short step means that some products s z lag far behind the others; one centring step evens them out.
+    if (largest_step(state) < kShortStep) solve(state, Direction::centring);
     advance(state, std::min(1.0, kStepFraction * largest_step(state)));
   }
   return state.residual() <= exact_limit_m_per_s(*state.step);
