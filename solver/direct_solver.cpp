@@ -36,7 +36,7 @@ class DirectSolver : public StepSolver {
                         Solution& solution) override;
   void analyze(const StepProblem& problem, std::span<const int> part_of_body);
   bool same_structure(const StepProblem& problem, std::span<const int> part_of_body) const;
-  bool run_chain(SolveSummary& summary);
+  bool run_chain(SolveSummary& summary, std::span<const double> warm_impulse);
   Strategy& strategy(std::string_view name);
 
   std::string strategy_, kernel_name_;
@@ -79,11 +79,14 @@ void DirectSolver::analyze(const StepProblem& problem, std::span<const int> part
 }
 
 // Runs the strategies one after the other until one succeeds; each hand-over is counted.
-bool DirectSolver::run_chain(SolveSummary& summary) {
+bool DirectSolver::run_chain(SolveSummary& summary, std::span<const double> warm_impulse) {
   const StrategyChoice choice = choose_strategies(strategy_, step_);
   summary.auto_reason = choice.reason;
   for (int k = 0; k < choice.count; ++k) {
-    if (k > 0) ++summary.fallbacks;
+    if (k > 0) {
+      ++summary.fallbacks;
+      state_.begin(step_, *state_.kernel, summary, warm_impulse);  // not from where the last one got lost
+    }
     summary.strategy = choice.names[k];
     if (strategy(choice.names[k]).run(state_)) return true;
   }
@@ -101,7 +104,7 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const 
     state_.begin(step_, *kernel_, summary, solution.impulse);
     state_.part_of_body = part_of_body;
   }
-  const bool solved = run_chain(summary);
+  const bool solved = run_chain(summary, solution.impulse);
   for (std::size_t r = 0; r < state_.impulse.size(); ++r) {
     solution.impulse[r] = std::clamp(state_.impulse[r], problem.lower[r], problem.upper[r]);
   }

@@ -22,7 +22,7 @@ StrategyChoice choose_strategies(std::string_view strategy, const PreparedStep& 
   for (int r = 0; r < step.row_count(); ++r)
     least = std::min(least, problem.compliance[r] / step.diagonal()[r]);
   if (least >= kPivotCompliance) return {{"pivot", "interior-point"}, 2, "compliant"};
-  return {{"interior-point", "pivot"}, 2, "stiff"};
+  return {{"interior-point", "newton", "pivot"}, 3, "stiff"};
 }
 
 }  // namespace cleave

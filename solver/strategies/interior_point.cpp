@@ -84,9 +84,13 @@ void InteriorPoint::start(SolveState& state) {
   const int m = problem.row_count();
   rows_.resize(m);
   pairs_ = 0;
-  double sum = 0;
-  for (int r = 0; r < m; ++r) sum += state.slack[r] * state.slack[r];
-  const double speed = std::max(1e-3, m > 0 ? std::sqrt(sum / m) : 0.0);
+  double sum = 0, largest = 0;
+  for (int r = 0; r < m; ++r) {
+    sum += state.slack[r] * state.slack[r];
+    largest = std::max(largest, std::abs(state.slack[r]));
+  }
+  // A warm start may be right in all rows but a few: those must not start far off the central path.
+  const double speed = std::max({1e-3, m > 0 ? std::sqrt(sum / m) : 0.0, 0.1 * largest});
   for (int r = 0; r < m; ++r) {
     choose_start(state, r, speed);
     if (rows_[r].fixed) state.impulse[r] = 0.5 * (problem.lower[r] + problem.upper[r]);

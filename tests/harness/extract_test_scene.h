@@ -36,7 +36,7 @@ inline SceneBuilder& pending_builder() {
   return builder;
 }
 
-class BuiltScene : public Scene {
+class ExtractTestScene : public Scene {
  public:
   SceneContent build(dWorldID world, dSpaceID space, const SceneSettings&, std::uint64_t) override {
     SceneContent content;
@@ -49,7 +49,7 @@ inline std::unique_ptr<OdeWorld> make_test_world(SceneBuilder builder, double gr
                                                  bool gyroscopic) {
   pending_builder() = std::move(builder);
   const SceneEntry entry{
-      "test", "", "", {}, [] { return std::unique_ptr<Scene>(std::make_unique<BuiltScene>()); }};
+      "test", "", "", {}, [] { return std::unique_ptr<Scene>(std::make_unique<ExtractTestScene>()); }};
   return std::make_unique<OdeWorld>(entry, SceneSettings({}), 1, gravity_m_per_s2, gyroscopic);
 }
 
