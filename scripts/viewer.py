@@ -28,6 +28,7 @@ from povray_scene import FIELD_OF_VIEW, Camera
 SOURCES = pathlib.Path(__file__).resolve().parent / "viewer"
 PAGE_BYTES = 30e6  # recordings are thinned to about this much
 PART_COLOURS = 96
+VIEW_MARGIN = 1.25
 VIEW_ASPECT = 1.4  # width / height that the first view is made for; wider windows show more at the sides
 NO_MOTION = ("<p class=\"cleave-message\">No motion recorded: there is no motion.h5. "
              "<code>cleave run --record-motion</code> writes one.</p>\n")
@@ -242,7 +243,12 @@ def _ground(motion, extent):
 def _view(motion, extent):
     look, centre = look_of(motion), (extent.low + extent.high) / 2
     radius = float((numpy.linalg.norm(extent.points - centre, axis=1) + extent.radii).max())
-    camera = Camera.around(extent.points, extent.radii, look.azimuth, look.elevation, VIEW_ASPECT)
+    camera = Camera.around(extent.points,
+                           extent.radii,
+                           look.azimuth,
+                           look.elevation,
+                           VIEW_ASPECT,
+                           margin=VIEW_MARGIN)
     return {
         "field_of_view": numpy.degrees(2 * numpy.arctan(numpy.tan(FIELD_OF_VIEW / 2) / VIEW_ASPECT)),
         "eye_m": camera.eye.tolist(),

@@ -168,7 +168,7 @@ class Browser:
         """x, y, width, height of an element in the window, scrolled to where it can be seen."""
         return self.value(f"""(() => {{
             const element = document.querySelector({json.dumps(selector)});
-            element.scrollIntoView({{block: "nearest"}});
+            element.scrollIntoView({{block: "nearest", behavior: "instant"}});
             const box = element.getBoundingClientRect();
             return [box.x, box.y, box.width, box.height];
         }})()""")

@@ -91,6 +91,18 @@ class ViewerTest(unittest.TestCase):
         self.assertEqual(self.browser.value("it().frame"), frame)
         self.assertEqual(self.browser.problems, [])
 
+    def test_a_click_turns_the_keys_to_the_viewer(self):
+        self.open()
+        self.browser.value("document.activeElement.blur()")
+        self.browser.press("End")
+        self.settle()
+        self.assertEqual(self.browser.value("it().frame"), 0)
+        x, y, width, height = self.browser.place(CANVAS)
+        self.browser.click(x + 5, y + 5)
+        self.browser.press("End")
+        self.settle()
+        self.assertEqual(self.browser.value("it().frame"), 29)
+
     def test_playing_ends_at_the_last_step_and_starts_again_from_the_first(self):
         self.open()
         self.browser.press("End")

@@ -72,6 +72,8 @@ export class Viewer {
       this.change();
     });
     ui.canvas.addEventListener('click', (event) => this.tell(event));
+    // From now on keys are meant for this viewer.
+    ui.canvas.addEventListener('pointerdown', () => this.section.focus({preventScroll: true}));
     this.section.addEventListener('keydown', (event) => this.key(event));
     new ResizeObserver(() => this.resize()).observe(this.section);
   }
