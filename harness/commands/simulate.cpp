@@ -23,6 +23,7 @@ int simulate(const std::string& command, const std::vector<std::string>& argv, c
   if (motion) watch = [&](const auto&... seen) { motion->record(seen...); };
   Simulation simulation(options, stop_requested(), std::move(observe), std::move(watch));
   const std::filesystem::path out = create_output_directory(options.out);
+  if (options.force && !motion) std::filesystem::remove(out / "motion.h5");  // of the run that is overwritten
   Manifest manifest(out / "manifest.json", command, argv, option_values(options));
   return do_manifested_work(manifest, [&] {
     CsvRecorder recorder(out / "steps.csv");

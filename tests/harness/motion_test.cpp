@@ -238,6 +238,8 @@ TEST(Motion, ChangesNothingElse) {
   EXPECT_EQ(cells("with", {"--record-motion"}), cells("without", {}));
   EXPECT_TRUE(std::filesystem::exists(directory / "with/motion.h5"));
   EXPECT_FALSE(std::filesystem::exists(directory / "without/motion.h5"));
+  cells("with", {});
+  EXPECT_FALSE(std::filesystem::exists(directory / "with/motion.h5")) << "that of another run was left";
 }
 
 TEST(Motion, IsRefusedWhereItMeansNothing) {
