@@ -21,7 +21,7 @@ struct PartitionOptions {
   double tau_mix = 0.5;  // mix: least degree decides while size < tau_mix * max_bodies, in [0, 1]
   EdgeWeight edge_weight = EdgeWeight::rows;  // mix: weight of an edge into the part
   DegreeUnit degree = DegreeUnit::bodies;     // mindp, maxdp, mix
-  DegreeScope degree_scope = DegreeScope::whole;
+  DegreeScope degree_scope = DegreeScope::left;  // measured to cut fewer rows with mindp and mix, see README
   bool as_printed = false;  // the paper to the letter: constraints as maxdp's degree and mix's edge weight
 };
 

@@ -26,7 +26,8 @@ namespace {
 constexpr double kStepFraction = 0.995;  // of the way to the nearest bound
 constexpr double kFixedWidth = 1e-13;    // m/s: rows whose bounds are closer than this are fixed between them
 constexpr int kMostIterations = 100;
-constexpr double kShortStep = 0.1;        // below this a centring direction replaces Mehrotra's
+constexpr double kShortStep = 0.1;       // below this, or where the products would grow, Mehrotra's direction is dropped
+constexpr double kCentring = 0.3;        // and products are aimed at this fraction of their mean, to first order
 
 class InteriorPoint : public Strategy {
  public:
@@ -39,6 +40,7 @@ class InteriorPoint : public Strategy {
   enum class Direction { predictor, corrector, centring };
   void solve(SolveState& state, Direction direction);
   double largest_step(const SolveState& state) const;
+  bool is_poor(const SolveState& state) const;
   double measure(double step) const;  // mean of s z after a step along the present direction
   void advance(SolveState& state, double step);
   bool polish(SolveState& state);
@@ -115,7 +117,7 @@ bool InteriorPoint::factor(SolveState& state) {
 void InteriorPoint::solve(SolveState& state, Direction direction) {
   const bool corrector = direction == Direction::corrector;
   const StepProblem& problem = state.step->problem();
-  double target = direction == Direction::centring ? measure(0) : 0.0;
+  double target = direction == Direction::centring ? kCentring * measure(0) : 0.0;
   if (corrector) {
     const double now = measure(0), affine = measure(largest_step(state));
     const double ratio = affine / now;
@@ -185,6 +187,14 @@ void InteriorPoint::advance(SolveState& state, double step) {
   state.update_velocity();
 }
 
+// Mehrotra's second-order term is right for a full step only. Where bounds cut the step it can throw products s z
+// far off the central path, and the iteration then cycles (Cartis, "Some disadvantages of a Mehrotra-type
+// primal-dual corrector interior point algorithm for linear programming", Appl. Numer. Math. 59, 2009).
+bool InteriorPoint::is_poor(const SolveState& state) const {
+  const double step = largest_step(state);
+  return step < kShortStep || measure(kStepFraction * step) > measure(0);
+}
+
 // Reads the active set off the slacks and multipliers and solves on it exactly, flipping what is still wrong
 // a few times. On failure the interior iterate is restored.
 bool InteriorPoint::polish(SolveState& state) {
@@ -232,8 +242,7 @@ bool InteriorPoint::run(SolveState& state) {
     if (!factor(state)) return false;
     solve(state, Direction::predictor);
     solve(state, Direction::corrector);
-    // A short step means that some products s z lag far behind the others; one centring step evens them out.
-    if (largest_step(state) < kShortStep) solve(state, Direction::centring);
+    if (is_poor(state)) solve(state, Direction::centring);
     advance(state, std::min(1.0, kStepFraction * largest_step(state)));
   }
   return state.residual() <= exact_limit_m_per_s(*state.step);
