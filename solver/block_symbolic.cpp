@@ -61,7 +61,8 @@ void BlockSymbolic::order(std::span<const int> stage_of_node) {
   position_of_node_.resize(node_count_);
   node_at_position_.resize(node_count_);
   if (node_count_ == 0) return;
-  // The ordering wants constraint sets below node_count, so the stages in use are numbered anew, in their order.
+  // The ordering wants constraint sets below node_count, so the stages in use are numbered anew, in their
+  // order.
   int* constraint = nullptr;
   if (!stage_of_node.empty()) {
     stack_.assign(stage_of_node.begin(), stage_of_node.end());

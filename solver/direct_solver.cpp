@@ -2,16 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "solver/kernels/kernel.h"
+#include "solver/proximal_step.h"
 #include "solver/registry.h"
 #include "solver/strategies/automatic.h"
 #include "solver/strategies/strategy.h"
 
 namespace cleave {
 namespace {
+
+constexpr int kMostProximalSteps = 50;
+constexpr int kStalledProximalSteps = 8;  // without the residual falling by a tenth, before giving up
 
 struct Link {
   std::string_view name;
@@ -34,9 +39,12 @@ class DirectSolver : public StepSolver {
  private:
   SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
                         Solution& solution) override;
-  void analyze(const StepProblem& problem, std::span<const int> part_of_body);
+  bool analyze(const StepProblem& problem, std::span<const int> part_of_body,
+               std::span<const double> warm_impulse);
   bool same_structure(const StepProblem& problem, std::span<const int> part_of_body) const;
   bool run_chain(SolveSummary& summary, std::span<const double> warm_impulse);
+  bool run_proximal(SolveSummary& summary);
+  void keep_best();
   Strategy& strategy(std::string_view name);
 
   std::string strategy_, kernel_name_;
@@ -48,6 +56,9 @@ class DirectSolver : public StepSolver {
   SolveState state_;
   std::vector<Link> links_;  // strategies made so far
   std::vector<int> analyzed_body_, analyzed_part_;
+  ProximalStep proximal_;
+  double best_residual_ = 0;  // of the strategies that failed in this solve
+  std::vector<double> best_impulse_, proximal_best_;
 };
 
 Strategy& DirectSolver::strategy(std::string_view name) {
@@ -67,21 +78,41 @@ bool DirectSolver::same_structure(const StepProblem& problem, std::span<const in
   return problem.row_body == analyzed_body_ && std::ranges::equal(part_of_body, analyzed_part_);
 }
 
-void DirectSolver::analyze(const StepProblem& problem, std::span<const int> part_of_body) {
+// Prepares the step, or in its place, when rows lack compliance, its proximal problem: then returns true.
+bool DirectSolver::analyze(const StepProblem& problem, std::span<const int> part_of_body,
+                           std::span<const double> warm_impulse) {
+  bool proximal = false;
   {
     StageTimer timer(clock_, Stage::analyze);
     step_.prepare(problem);
-    if (options_.reuse_analysis && same_structure(problem, part_of_body)) return;
+    proximal = ProximalStep::is_needed(step_);
+    if (proximal) {
+      proximal_.begin(step_, warm_impulse);
+      step_.prepare(proximal_.problem());
+    }
+    if (options_.reuse_analysis && same_structure(problem, part_of_body)) return proximal;
     analyzed_body_ = problem.row_body;
     analyzed_part_.assign(part_of_body.begin(), part_of_body.end());
   }
   kernel_->analyze(step_, part_of_body, state_.tasks);
+  return proximal;
 }
 
-// Runs the strategies one after the other until one succeeds; each hand-over is counted.
+// A strategy that failed may still have the best answer there is.
+void DirectSolver::keep_best() {
+  state_.update_velocity();
+  const double residual = state_.residual();
+  if (!(residual < best_residual_)) return;
+  best_residual_ = residual;
+  best_impulse_ = state_.impulse;
+}
+
+// Runs the strategies one after the other until one succeeds; each hand-over is counted. When all fail, the
+// impulses of the least residual stay.
 bool DirectSolver::run_chain(SolveSummary& summary, std::span<const double> warm_impulse) {
   const StrategyChoice choice = choose_strategies(strategy_, step_);
   summary.auto_reason = choice.reason;
+  best_residual_ = std::numeric_limits<double>::infinity();
   for (int k = 0; k < choice.count; ++k) {
     if (k > 0) {
       ++summary.fallbacks;
@@ -89,8 +120,35 @@ bool DirectSolver::run_chain(SolveSummary& summary, std::span<const double> warm
     }
     summary.strategy = choice.names[k];
     if (strategy(choice.names[k]).run(state_)) return true;
+    keep_best();
   }
+  if (std::isfinite(best_residual_)) state_.impulse = best_impulse_;
+  state_.update_velocity();
   return false;
+}
+
+// Proximal steps (proximal_step.h) until the residual of the problem as it was asked, compliance zero, is at
+// the target or falls no more. Between them the active set mostly stays: then a step is a correction by the
+// factor at hand.
+bool DirectSolver::run_proximal(SolveSummary& summary) {
+  const double target = state_.options.target_m_per_s * step_.velocity_scale();
+  double least = std::numeric_limits<double>::infinity();
+  if (!state_.factor_free()) return false;
+  for (int k = 0, stalled = 0; k < kMostProximalSteps && stalled < kStalledProximalSteps; ++k) {
+    proximal_.recentre(state_.impulse);
+    state_.update_velocity();
+    const double residual = state_.residual();
+    if (residual <= target) return true;
+    stalled = residual < 0.9 * least ? 0 : stalled + 1;
+    if (residual < least) least = residual, proximal_best_ = state_.impulse;
+    ++summary.refinements;
+    state_.refine_free(0.1 * target, 3, false);
+    if (state_.find_violations(0.1 * target) == 0 || state_.settle(0.1 * target)) continue;
+    state_.begin(step_, *kernel_, summary, proximal_best_);
+    if (!run_chain(summary, proximal_best_)) break;
+  }
+  if (std::isfinite(least)) state_.impulse = proximal_best_;
+  return least <= exact_limit_m_per_s(step_);
 }
 
 SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const int> part_of_body,
@@ -98,13 +156,14 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const 
   SolveSummary summary;
   summary.kernel = kernel_name_;
   clock_.start();
-  analyze(problem, part_of_body);
+  const bool proximal = analyze(problem, part_of_body, solution.impulse);
   {
     StageTimer timer(clock_, Stage::predict);
     state_.begin(step_, *kernel_, summary, solution.impulse);
     state_.part_of_body = part_of_body;
   }
-  const bool solved = run_chain(summary, solution.impulse);
+  bool solved = run_chain(summary, solution.impulse);
+  if (solved && proximal) solved = run_proximal(summary);
   for (std::size_t r = 0; r < state_.impulse.size(); ++r) {
     solution.impulse[r] = std::clamp(state_.impulse[r], problem.lower[r], problem.upper[r]);
   }

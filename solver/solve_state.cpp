@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cleave {
 
@@ -44,10 +45,7 @@ void SolveState::states_from_impulses() {
 bool SolveState::factor_free() {
   const StepProblem& problem = step->problem();
   for (std::size_t r = 0; r < impulse.size(); ++r) {
-    // With C = 0 the step is a proximal one: the increment sees a small compliance, the slack it removes does
-    // not.
-    const double floor = 1e-13 * step->diagonal()[r];
-    weight[r] = state[r] == RowState::free ? 1 / std::max(problem.compliance[r], floor) : 0.0;
+    weight[r] = state[r] == RowState::free ? 1 / problem.compliance[r] : 0.0;
     if (state[r] == RowState::lower) impulse[r] = problem.lower[r];
     if (state[r] == RowState::upper) impulse[r] = problem.upper[r];
   }
@@ -99,6 +97,20 @@ int SolveState::find_violations(double tolerance) {
     if (wrong) violated.push_back(r);
   }
   return static_cast<int>(violated.size());
+}
+
+bool SolveState::settle(double tolerance) {
+  constexpr int kRounds = 4;
+  int least = std::numeric_limits<int>::max();
+  for (int round = 0; round < kRounds && factor_free(); ++round) {
+    refine_free(0.1 * tolerance, 8, true);
+    const int count = find_violations(tolerance);
+    if (count == 0) return true;
+    if (count >= least) return false;
+    least = count;
+    for (int row : violated) flip(row);
+  }
+  return false;
 }
 
 void SolveState::flip(int row) {

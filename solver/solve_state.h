@@ -44,6 +44,10 @@ struct SolveState {
   // `violated` and moves nothing.
   int find_violations(double tolerance);
 
+  // Solves on the present row states and flips what is violated, while the number of violations falls, a few
+  // times. True when none is left.
+  bool settle(double tolerance);
+
   // Moves one violated row to the state its violation asks for.
   void flip(int row);
 

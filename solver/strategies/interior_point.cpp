@@ -16,7 +16,6 @@
 // iteration goes on.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "solver/strategies/strategy.h"
 
@@ -26,8 +25,9 @@ namespace {
 constexpr double kStepFraction = 0.995;  // of the way to the nearest bound
 constexpr double kFixedWidth = 1e-13;    // m/s: rows whose bounds are closer than this are fixed between them
 constexpr int kMostIterations = 100;
-constexpr double kShortStep = 0.1;       // below this, or where the products would grow, Mehrotra's direction is dropped
-constexpr double kCentring = 0.3;        // and products are aimed at this fraction of their mean, to first order
+constexpr double kShortStep =
+    0.1;  // below this, or where the products would grow, Mehrotra's direction is dropped
+constexpr double kCentring = 0.3;  // and products are aimed at this fraction of their mean, to first order
 
 class InteriorPoint : public Strategy {
  public:
@@ -107,8 +107,7 @@ bool InteriorPoint::factor(SolveState& state) {
     double barrier = 0;
     if (row.has_lower) barrier += row.z_lo / row.s_lo;
     if (row.has_upper) barrier += row.z_hi / row.s_hi;
-    const double floor = 1e-13 * state.step->diagonal()[r];
-    state.weight[r] = row.fixed ? 0.0 : 1 / std::max(problem.compliance[r] + barrier, floor);
+    state.weight[r] = row.fixed ? 0.0 : 1 / (problem.compliance[r] + barrier);
   }
   ++state.summary->factorizations;
   return state.kernel->factor(state.weight, state.tasks);
@@ -187,8 +186,8 @@ void InteriorPoint::advance(SolveState& state, double step) {
   state.update_velocity();
 }
 
-// Mehrotra's second-order term is right for a full step only. Where bounds cut the step it can throw products s z
-// far off the central path, and the iteration then cycles (Cartis, "Some disadvantages of a Mehrotra-type
+// Mehrotra's second-order term is right for a full step only. Where bounds cut the step it can throw products
+// s z far off the central path, and the iteration then cycles (Cartis, "Some disadvantages of a Mehrotra-type
 // primal-dual corrector interior point algorithm for linear programming", Appl. Numer. Math. 59, 2009).
 bool InteriorPoint::is_poor(const SolveState& state) const {
   const double step = largest_step(state);
@@ -207,15 +206,7 @@ bool InteriorPoint::polish(SolveState& state) {
     if (row.fixed || (row.has_lower && d * row.s_lo < row.z_lo)) state.state[r] = RowState::lower;
     if (row.has_upper && d * row.s_hi < row.z_hi) state.state[r] = RowState::upper;
   }
-  int least = std::numeric_limits<int>::max();
-  for (int round = 0; round < 4 && state.factor_free(); ++round) {
-    state.refine_free(0.1 * tolerance, 8, true);
-    const int count = state.find_violations(tolerance);
-    if (count == 0 && state.residual() <= exact_limit_m_per_s(*state.step)) return true;
-    if (count == 0 || count >= least) break;
-    least = count;
-    for (int row : state.violated) state.flip(row);
-  }
+  if (state.settle(tolerance) && state.residual() <= exact_limit_m_per_s(*state.step)) return true;
   state.impulse = kept_impulse_;
   state.update_velocity();
   return false;

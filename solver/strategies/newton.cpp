@@ -35,9 +35,9 @@ class Newton : public Strategy {
     for (int k = 0; k < state.options.max_iterations; ++k) {
       ++state.summary->iterations;
       read_impulses(state);
-      const std::vector<double> velocity = state.velocity;
+      kept_velocity_ = state.velocity;
       if (finish(state)) return true;
-      state.velocity = velocity;
+      state.velocity = kept_velocity_;
       read_impulses(state);
       if (!direction(state)) return false;
       const double step = line_search(state);
@@ -52,14 +52,10 @@ class Newton : public Strategy {
     const StepProblem& problem = state.step->problem();
     state.step->jacobian_times(state.velocity, row_velocity_);
     for (std::size_t r = 0; r < state.impulse.size(); ++r) {
-      const double free = (problem.rhs[r] - row_velocity_[r]) / compliance(state, r);
+      const double free = (problem.rhs[r] - row_velocity_[r]) / problem.compliance[r];
       state.impulse[r] = std::clamp(free, problem.lower[r], problem.upper[r]);
     }
     state.states_from_impulses();
-  }
-
-  static double compliance(const SolveState& state, std::size_t r) {
-    return std::max(state.step->problem().compliance[r], 1e-13 * state.step->diagonal()[r]);
   }
 
   // An exact solve on the present states ends the search when it violates nothing.
@@ -78,7 +74,7 @@ class Newton : public Strategy {
   bool direction(SolveState& state) {
     const StepProblem& problem = state.step->problem();
     for (std::size_t r = 0; r < state.impulse.size(); ++r) {
-      state.weight[r] = state.state[r] == RowState::free ? 1 / compliance(state, r) : 0.0;
+      state.weight[r] = state.state[r] == RowState::free ? 1 / problem.compliance[r] : 0.0;
     }
     ++state.summary->factorizations;
     if (!state.kernel->factor(state.weight, state.tasks)) return false;
@@ -113,7 +109,7 @@ class Newton : public Strategy {
     }
     breakpoints_.clear();
     for (std::size_t r = 0; r < state.impulse.size(); ++r) {
-      const double c = compliance(state, r), dw = row_step_[r];
+      const double c = problem.compliance[r], dw = row_step_[r];
       constant -= dw * state.impulse[r];
       const double curvature = dw * dw / c;
       if (state.state[r] == RowState::free) rate += curvature;
@@ -136,7 +132,7 @@ class Newton : public Strategy {
     return rate > 0 ? t - slope / rate : t;
   }
 
-  std::vector<double> row_velocity_, row_step_;
+  std::vector<double> row_velocity_, row_step_, kept_velocity_;
   std::vector<std::pair<double, double>> breakpoints_;  // (step, change of the slope's rate)
   std::vector<RowState> last_state_;
 };

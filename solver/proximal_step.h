@@ -1,0 +1,38 @@
+// Rows without compliance. With C_r = 0 the kernels' D_r = 1 / C_r does not exist and redundant rows make the
+// impulses ambiguous. The proximal point method solves a sequence of problems that do have compliance,
+//
+//     lambda_{k+1} solves the step problem with  C + delta  in place of  C  and  b + delta lambda_k  in place
+//     of  b,
+//
+// whose slack is w + delta (lambda_{k+1} - lambda_k): once the impulses stop moving, the answer is the one of
+// the problem that was asked. Each step contracts by delta / (delta + the least eigenvalue that matters), so
+// a few suffice. Impulses end where redundant rows share the load; velocities are unique. Source:
+// Rockafellar, "Monotone operators and the proximal point algorithm", SIAM J. Control Optim. 14, 1976.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/prepared_step.h"
+
+namespace cleave {
+
+class ProximalStep {
+ public:
+  // Whether some row's compliance is so small against d_r that kernels cannot divide by it.
+  static bool is_needed(const PreparedStep& step);
+
+  // Copies the problem, adds delta to the rows that need it, and centres it at the impulses (m).
+  void begin(const PreparedStep& step, std::span<const double> centre);
+
+  // b + delta lambda: the slack of the copy at these impulses is the slack of the original.
+  void recentre(std::span<const double> centre);
+
+  const StepProblem& problem() const { return problem_; }
+
+ private:
+  StepProblem problem_;
+  std::vector<double> original_rhs_, delta_;
+};
+
+}  // namespace cleave
