@@ -15,6 +15,8 @@
 namespace cleave {
 namespace {
 
+constexpr double kLeastCompliance = 1e-15;  // of d_r: below, D = 1 / C is no number to factor with
+constexpr double kProximalDeltas[] = {0, 1e-9, 1e-11};  // tried in this order; 0 is the problem as it is
 constexpr int kMostProximalSteps = 50;
 constexpr int kStalledProximalSteps = 8;  // without the residual falling by a tenth, before giving up
 
@@ -39,8 +41,9 @@ class DirectSolver : public StepSolver {
  private:
   SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
                         Solution& solution) override;
-  bool analyze(const StepProblem& problem, std::span<const int> part_of_body,
-               std::span<const double> warm_impulse);
+  void analyze(const StepProblem& problem, std::span<const int> part_of_body);
+  bool attempt(SolveSummary& summary, double delta, std::span<const double> warm_impulse);
+  bool run_attempts(SolveSummary& summary, const StepProblem& problem, std::span<const double> warm_impulse);
   bool same_structure(const StepProblem& problem, std::span<const int> part_of_body) const;
   bool run_chain(SolveSummary& summary, std::span<const double> warm_impulse);
   bool run_proximal(SolveSummary& summary);
@@ -58,7 +61,7 @@ class DirectSolver : public StepSolver {
   std::vector<int> analyzed_body_, analyzed_part_;
   ProximalStep proximal_;
   double best_residual_ = 0;  // of the strategies that failed in this solve
-  std::vector<double> best_impulse_, proximal_best_;
+  std::vector<double> best_impulse_, proximal_best_, attempted_best_;
 };
 
 Strategy& DirectSolver::strategy(std::string_view name) {
@@ -78,24 +81,14 @@ bool DirectSolver::same_structure(const StepProblem& problem, std::span<const in
   return problem.row_body == analyzed_body_ && std::ranges::equal(part_of_body, analyzed_part_);
 }
 
-// Prepares the step, or in its place, when rows lack compliance, its proximal problem: then returns true.
-bool DirectSolver::analyze(const StepProblem& problem, std::span<const int> part_of_body,
-                           std::span<const double> warm_impulse) {
-  bool proximal = false;
+void DirectSolver::analyze(const StepProblem& problem, std::span<const int> part_of_body) {
   {
     StageTimer timer(clock_, Stage::analyze);
-    step_.prepare(problem);
-    proximal = ProximalStep::is_needed(step_);
-    if (proximal) {
-      proximal_.begin(step_, warm_impulse);
-      step_.prepare(proximal_.problem());
-    }
-    if (options_.reuse_analysis && same_structure(problem, part_of_body)) return proximal;
+    if (options_.reuse_analysis && same_structure(problem, part_of_body)) return;
     analyzed_body_ = problem.row_body;
     analyzed_part_.assign(part_of_body.begin(), part_of_body.end());
   }
   kernel_->analyze(step_, part_of_body, state_.tasks);
-  return proximal;
 }
 
 // A strategy that failed may still have the best answer there is.
@@ -151,19 +144,51 @@ bool DirectSolver::run_proximal(SolveSummary& summary) {
   return least <= exact_limit_m_per_s(step_);
 }
 
+// One run of the strategies, on the problem itself (delta 0) or by proximal steps. The impulses that stay are
+// the best that were seen.
+bool DirectSolver::attempt(SolveSummary& summary, double delta, std::span<const double> warm_impulse) {
+  {
+    StageTimer timer(clock_, Stage::predict);
+    if (delta > 0) {
+      proximal_.begin(step_, warm_impulse, delta);
+      step_.prepare(proximal_.problem());
+    }
+    state_.begin(step_, *kernel_, summary, warm_impulse);
+  }
+  return run_chain(summary, warm_impulse) && (delta == 0 || run_proximal(summary));
+}
+
+// The problem itself where its compliance can be divided by; proximal steps where it cannot, or where it is
+// so small that rounding kept the first attempt above the limit.
+bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& problem,
+                                std::span<const double> warm_impulse) {
+  const double softest = least_relative_compliance(step_);
+  double least = std::numeric_limits<double>::infinity();
+  for (double delta : kProximalDeltas) {
+    if (delta == 0 ? softest < kLeastCompliance : softest >= delta) continue;
+    if (std::isfinite(least)) ++summary.fallbacks;
+    if (attempt(summary, delta, warm_impulse)) return true;
+    step_.prepare(problem);
+    state_.update_velocity();
+    const double residual = state_.residual();
+    if (residual < least) least = residual, attempted_best_ = state_.impulse;
+  }
+  if (std::isfinite(least)) state_.impulse = attempted_best_;
+  return false;
+}
+
 SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const int> part_of_body,
                                     Solution& solution) {
   SolveSummary summary;
   summary.kernel = kernel_name_;
   clock_.start();
-  const bool proximal = analyze(problem, part_of_body, solution.impulse);
   {
-    StageTimer timer(clock_, Stage::predict);
-    state_.begin(step_, *kernel_, summary, solution.impulse);
-    state_.part_of_body = part_of_body;
+    StageTimer timer(clock_, Stage::analyze);
+    step_.prepare(problem);
   }
-  bool solved = run_chain(summary, solution.impulse);
-  if (solved && proximal) solved = run_proximal(summary);
+  analyze(problem, part_of_body);
+  state_.part_of_body = part_of_body;
+  const bool solved = run_attempts(summary, problem, solution.impulse);
   for (std::size_t r = 0; r < state_.impulse.size(); ++r) {
     solution.impulse[r] = std::clamp(state_.impulse[r], problem.lower[r], problem.upper[r]);
   }

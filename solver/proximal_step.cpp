@@ -1,30 +1,25 @@
 #include "solver/proximal_step.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace cleave {
-namespace {
 
-constexpr double kLeastCompliance = 1e-12;  // of d_r: below, a factorisation keeps too few digits
-constexpr double kDelta = 1e-9;             // of d_r
-
-bool is_rigid(const PreparedStep& step, int row) {
-  return step.problem().compliance[row] < kLeastCompliance * step.diagonal()[row];
-}
-
-}  // namespace
-
-bool ProximalStep::is_needed(const PreparedStep& step) {
+double least_relative_compliance(const PreparedStep& step) {
+  double least = std::numeric_limits<double>::infinity();
   for (int r = 0; r < step.row_count(); ++r) {
-    if (is_rigid(step, r)) return true;
+    least = std::min(least, step.problem().compliance[r] / step.diagonal()[r]);
   }
-  return false;
+  return least;
 }
 
-void ProximalStep::begin(const PreparedStep& step, std::span<const double> centre) {
+void ProximalStep::begin(const PreparedStep& step, std::span<const double> centre, double relative_delta) {
   problem_ = step.problem();
   original_rhs_ = problem_.rhs;
   delta_.resize(step.row_count());
   for (int r = 0; r < step.row_count(); ++r) {
-    delta_[r] = is_rigid(step, r) ? kDelta * step.diagonal()[r] : 0.0;
+    const double delta = relative_delta * step.diagonal()[r];
+    delta_[r] = problem_.compliance[r] < delta ? delta : 0.0;
     problem_.compliance[r] += delta_[r];
   }
   recentre(centre);

@@ -17,13 +17,14 @@
 
 namespace cleave {
 
+// min_r C_r / d_r; infinity without rows.
+double least_relative_compliance(const PreparedStep& step);
+
 class ProximalStep {
  public:
-  // Whether some row's compliance is so small against d_r that kernels cannot divide by it.
-  static bool is_needed(const PreparedStep& step);
-
-  // Copies the problem, adds delta to the rows that need it, and centres it at the impulses (m).
-  void begin(const PreparedStep& step, std::span<const double> centre);
+  // Copies the problem, adds delta = relative_delta d_r to the rows with less compliance than that, and
+  // centres it at the impulses (m).
+  void begin(const PreparedStep& step, std::span<const double> centre, double relative_delta);
 
   // b + delta lambda: the slack of the copy at these impulses is the slack of the original.
   void recentre(std::span<const double> centre);

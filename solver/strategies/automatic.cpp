@@ -1,7 +1,8 @@
 #include "solver/strategies/automatic.h"
 
 #include <algorithm>
-#include <limits>
+
+#include "solver/proximal_step.h"
 
 namespace cleave {
 namespace {
@@ -18,10 +19,8 @@ StrategyChoice choose_strategies(std::string_view strategy, const PreparedStep& 
   if (std::ranges::all_of(problem.row_kind, [](RowKind kind) { return kind == RowKind::bilateral; })) {
     return {{"pivot", "interior-point"}, 2, "bilateral-only"};
   }
-  double least = std::numeric_limits<double>::infinity();
-  for (int r = 0; r < step.row_count(); ++r)
-    least = std::min(least, problem.compliance[r] / step.diagonal()[r]);
-  if (least >= kPivotCompliance) return {{"pivot", "interior-point"}, 2, "compliant"};
+  if (least_relative_compliance(step) >= kPivotCompliance)
+    return {{"pivot", "interior-point"}, 2, "compliant"};
   return {{"interior-point", "newton", "pivot"}, 3, "stiff"};
 }
 
