@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <set>
 #include <stdexcept>
 
 #include "tests/harness/problem_file_sample.h"
@@ -269,7 +270,15 @@ TEST(ProblemFileDamage, ThingsThatAreNoHdf5File) {
 TEST(ProblemFileDamage, ProgramSaysItInOneLine) {
   const TemporaryDirectory directory;
   const std::string path = directory / "damaged.h5";
-  for (const Damage& damage : {damaged_values()[0], damaged_structure()[0], damaged_structure().back()}) {
+  const std::set<std::string> chosen = {
+      "nan_rhs",          "body_too_large",     "lower_above_upper", "negative_compliance",
+      "jacobian_is_flat", "jacobian_is_narrow", "old_schema",        "no_rhs"};
+  std::vector<Damage> damages = damaged_values();
+  for (const Damage& damage : damaged_structure()) damages.push_back(damage);
+  std::erase_if(damages, [&](const Damage& damage) { return !chosen.contains(damage.name); });
+  ASSERT_EQ(damages.size(), chosen.size());
+  for (const Damage& damage : damages) {
+    SCOPED_TRACE(damage.name);
     ProblemFile file = sample_file();
     damage.change(file);
     write_unchecked(path, file, damage.instead);
