@@ -1,8 +1,6 @@
-// Times every partitioner x refiner and METIS on the same graphs; with --ablation prints, instead of times,
-// what the open choices of the method do to the cut (the table of partition/README.md).
+// Times every partitioner x refiner and METIS on the same graphs.
 //
 //   partition_benchmark [--graph FILE]... [Google Benchmark options]
-//   partition_benchmark --ablation [--graph FILE]...
 //
 // Without --graph the graphs are synthetic piles. A graph file is plain text: the number of bodies n, then n
 // masses in kg, then one line "a b rows" for every constraint (a joint or a contact point), -1 for static
@@ -185,105 +183,13 @@ void register_benchmarks(const std::vector<NamedGraph>& graphs) {
   }
 }
 
-struct Variant {
-  const char* name;
-  DegreeScope scope;
-  bool as_printed;
-  double tau_mr;
-};
-
-const Variant kVariants[] = {
-    {"default", DegreeScope::whole, false, 10.0},
-    {"degree left", DegreeScope::left, false, 10.0},
-    {"as printed", DegreeScope::whole, true, 10.0},
-    {"as printed, degree left", DegreeScope::left, true, 10.0},
-    {"tau_mr 10.5", DegreeScope::whole, false, 10.5},
-};
-
-// Whether every option that the variant changes is one the combination reads.
-bool concerns(const Variant& variant, const std::string& partitioner, const std::string& refiner) {
-  const bool reads_scope = partitioner == "mindp" || partitioner == "maxdp" || partitioner == "mix";
-  const bool reads_as_printed = partitioner == "maxdp" || partitioner == "mix" || refiner != "none";
-  return (variant.scope == DegreeScope::whole || reads_scope) && (!variant.as_printed || reads_as_printed) &&
-         (variant.tau_mr == 10.0 || partitioner == "mr");
-}
-
-double cube_mflop(double unknowns) { return unknowns * unknowns * unknowns / 3e6; }
-
-// Means over the graphs: cut pairs / interface rows / Mflop of a dense Cholesky factorisation of the
-// interface (rows) + of all parts (6 unknowns a body).
-std::string ablation_cell(const std::vector<NamedGraph>& graphs, const Variant& variant,
-                          const Partitioner& partitioner, const Refiner& refiner) {
-  PartitionOptions grow;
-  grow.max_bodies = kMaxBodies;
-  grow.degree_scope = variant.scope;
-  grow.as_printed = variant.as_printed;
-  grow.tau_mr = variant.tau_mr;
-  RefineOptions refine;
-  refine.max_bodies = kMaxBodies;
-  refine.as_printed = variant.as_printed;
-  double pairs = 0, rows = 0, interface_mflop = 0, parts_mflop = 0;
-  for (const NamedGraph& named : graphs) {
-    Partition partition = partitioner.run(named.graph, grow);
-    refiner.run(named.graph, refine, partition);
-    const PartitionMetrics metrics = measure_partition(named.graph, partition.part_of_body);
-    pairs += metrics.cut_pairs;
-    rows += metrics.interface_rows;
-    interface_mflop += cube_mflop(metrics.interface_rows);
-    for (int bodies : part_sizes(partition)) parts_mflop += cube_mflop(6.0 * bodies);
-  }
-  const double count = static_cast<double>(graphs.size());
-  char cell[128];
-  std::snprintf(cell, sizeof cell, "%.0f / %.0f / %.0f + %.0f", pairs / count, rows / count,
-                interface_mflop / count, parts_mflop / count);
-  return cell;
-}
-
-void print_ablation(const std::string& title, const std::vector<NamedGraph>& graphs) {
-  std::printf("%s:\n\n|", title.c_str());
-  for (const Variant& variant : kVariants) std::printf(" | %s", variant.name);
-  std::printf(" |\n|---|");
-  for (size_t k = 0; k < std::size(kVariants); ++k) std::printf("---|");
-  std::printf("\n");
-  for (const PartitionerEntry& partitioner : partitioners()) {
-    for (const RefinerEntry& refiner : refiners()) {
-      std::printf("| %s+%s", partitioner.name, refiner.name);
-      for (const Variant& variant : kVariants) {
-        const bool shown = concerns(variant, partitioner.name, refiner.name);
-        const std::string cell =
-            shown ? ablation_cell(graphs, variant, *partitioner.make(), *refiner.make()) : std::string();
-        std::printf(" | %s", cell.c_str());
-      }
-      std::printf(" |\n");
-    }
-  }
-  std::printf("\n");
-}
-
 const std::vector<double> kEqualMassKg{100}, kThreeMassesKg{10, 100, 1000};
 
-void print_synthetic_ablation() {
-  constexpr int kSeeds = 20;
-  const auto piles = [](int bodies, const std::vector<double>& mass_kg) {
-    std::vector<NamedGraph> graphs;
-    for (int seed = 1; seed <= kSeeds; ++seed) {
-      graphs.push_back({std::to_string(seed), synthetic_pile(bodies, mass_kg, seed)});
-    }
-    return graphs;
-  };
-  const std::string means = "means over " + std::to_string(kSeeds) + " seeds";
-  print_ablation("Synthetic piles of 200 bodies of 100 kg, " + means, piles(200, kEqualMassKg));
-  print_ablation("Synthetic piles of 600 bodies of 10, 100 or 1000 kg, " + means, piles(600, kThreeMassesKg));
-}
-
 int run(int argc, char** argv) {
-  bool ablation = false;
   std::vector<NamedGraph> graphs;
   std::vector<char*> others{argv[0]};
   for (int k = 1; k < argc; ++k) {
-    if (std::strcmp(argv[k], "--ablation") == 0) {
-      ablation = true;
-    } else if (std::strcmp(argv[k], "--graph") == 0) {
+    if (std::strcmp(argv[k], "--graph") == 0) {
       if (++k == argc) throw std::invalid_argument("--graph needs a file");
       graphs.push_back({std::filesystem::path(argv[k]).filename().string(), read_graph(argv[k])});
     } else {
@@ -293,18 +199,12 @@ int run(int argc, char** argv) {
   int other_count = static_cast<int>(others.size());
   benchmark::Initialize(&other_count, others.data());
   if (benchmark::ReportUnrecognizedArguments(other_count, others.data())) return 1;
-  if (ablation && graphs.empty()) {
-    print_synthetic_ablation();
-  } else if (ablation) {
-    print_ablation("Means over " + std::to_string(graphs.size()) + " recorded graphs", graphs);
-  } else {
-    if (graphs.empty()) {
-      graphs.push_back({"pile_200", synthetic_pile(200, kEqualMassKg, 1)});
-      graphs.push_back({"pile_600", synthetic_pile(600, kThreeMassesKg, 1)});
-    }
-    register_benchmarks(graphs);
-    benchmark::RunSpecifiedBenchmarks();
+  if (graphs.empty()) {
+    graphs.push_back({"pile_200", synthetic_pile(200, kEqualMassKg, 1)});
+    graphs.push_back({"pile_600", synthetic_pile(600, kThreeMassesKg, 1)});
   }
+  register_benchmarks(graphs);
+  benchmark::RunSpecifiedBenchmarks();
   return 0;
 }
 
