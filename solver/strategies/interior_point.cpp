@@ -16,18 +16,23 @@
 // iteration goes on.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
+#include "solver/proximal_step.h"
 #include "solver/strategies/strategy.h"
 
 namespace cleave {
 namespace {
 
 constexpr double kStepFraction = 0.995;  // of the way to the nearest bound
-constexpr double kFixedWidth = 1e-13;    // m/s: rows whose bounds are closer than this are fixed between them
+// Rows whose bounds are closer than this, in m/s or in roundings of the bounds, are fixed between them.
+constexpr double kFixedWidth = 1e-13, kFixedRoundings = 64 * std::numeric_limits<double>::epsilon();
+constexpr double kCompliant = 1e-4;  // of d_r: from here on the active set can be read off early
+constexpr double kWarmShare = 0.1;   // warm impulses are used below this share of the residual without any
 constexpr int kMostIterations = 100;
-constexpr double kShortStep =
-    0.1;  // below this, or where the products would grow, Mehrotra's direction is dropped
-constexpr double kCentring = 0.3;  // and products are aimed at this fraction of their mean, to first order
+// Below this step, or where the products would grow, Mehrotra's direction is dropped and the products are
+// aimed at kCentring of their mean, to first order.
+constexpr double kShortStep = 0.1, kCentring = 0.3;
 
 class InteriorPoint : public Strategy {
  public:
@@ -35,6 +40,7 @@ class InteriorPoint : public Strategy {
 
  private:
   void start(SolveState& state);
+  void choose_impulses(SolveState& state);
   void choose_start(SolveState& state, int row, double speed);
   bool factor(SolveState& state);
   enum class Direction { predictor, corrector, centring };
@@ -61,7 +67,9 @@ void InteriorPoint::choose_start(SolveState& state, int r, double speed) {
   Row& row = rows_[r];
   row = Row{};
   const double d = state.step->diagonal()[r], w = state.slack[r];
-  row.fixed = d * (problem.upper[r] - problem.lower[r]) <= kFixedWidth;
+  const double width = problem.upper[r] - problem.lower[r];
+  row.fixed = d * width <= kFixedWidth ||
+              (std::isfinite(width) && width <= kFixedRoundings * std::abs(problem.lower[r]));
   if (row.fixed) return;
   row.has_lower = std::isfinite(problem.lower[r]);
   row.has_upper = std::isfinite(problem.upper[r]);
@@ -80,10 +88,25 @@ void InteriorPoint::choose_start(SolveState& state, int r, double speed) {
   pairs_ += row.has_lower + row.has_upper;
 }
 
+// Impulses of the last step that are not nearly right lie close to the wrong bounds, which costs more
+// iterations than starting from none.
+void InteriorPoint::choose_impulses(SolveState& state) {
+  const double warm = state.residual();
+  kept_impulse_ = state.impulse;
+  for (std::size_t r = 0; r < state.impulse.size(); ++r) {
+    state.impulse[r] = std::clamp(0.0, state.step->problem().lower[r], state.step->problem().upper[r]);
+  }
+  state.update_velocity();
+  if (kWarmShare * state.residual() < warm) return;
+  state.impulse = kept_impulse_;
+  state.update_velocity();
+}
+
 // Slacks and multipliers at the present impulses, pushed into the interior by a typical speed of the step.
 void InteriorPoint::start(SolveState& state) {
   const StepProblem& problem = state.step->problem();
   const int m = problem.row_count();
+  choose_impulses(state);
   rows_.resize(m);
   pairs_ = 0;
   double sum = 0, largest = 0;
@@ -214,7 +237,8 @@ bool InteriorPoint::polish(SolveState& state) {
 
 bool InteriorPoint::run(SolveState& state) {
   start(state);
-  double polish_below = 1e-5 * state.step->velocity_scale();
+  const bool compliant = least_relative_compliance(*state.step) >= kCompliant;
+  double polish_below = (compliant ? 1e-5 : 1e-6) * state.step->velocity_scale();
   for (int k = 0; k < kMostIterations; ++k) {
     double worst = 0;  // largest complementarity product and residual as velocities
     for (std::size_t r = 0; r < rows_.size(); ++r) {
