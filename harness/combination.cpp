@@ -8,17 +8,10 @@
 #include <new>
 
 #include "harness/hash.h"
+#include "harness/solver_choices.h"
 
 namespace cleave {
 namespace {
-
-SolveOptions solve_options(const RunOptions& options) {
-  SolveOptions solve;
-  solve.threads = options.threads;
-  solve.sweeps = options.sweeps;
-  solve.reuse_analysis = options.reuse_analysis;
-  return solve;
-}
 
 // What the solver is handed: a solver that ignores parts still receives one id per body.
 std::vector<int> solver_parts(const std::optional<Split>& split, const StepProblem& problem) {
@@ -34,6 +27,7 @@ void judge_outcome(const StepProblem& problem, Outcome& outcome) {
   outcome.verdict = judge(problem, outcome.solution.impulse);
   outcome.finite = all_finite(outcome.solution.impulse) && all_finite(outcome.solution.velocity) &&
                    all_finite(outcome.verdict.velocity);
+  if (!outcome.solved()) return;
   if (!outcome.finite) {
     outcome.status = SolveStatus::diverged;
   } else if (outcome.status == SolveStatus::ok && !outcome.verdict.exact) {
@@ -71,6 +65,15 @@ void set_split(const Repeats& repeats, StepRecord& row) {
       repeats, [](const auto& repeat) { return repeat.split->partition_ms + repeat.split->refine_ms; });
 }
 
+// A solver that returned nothing left nothing to judge.
+void set_verdict(const StepProblem& problem, const Outcome& outcome, StepRecord& row) {
+  if (outcome.status != SolveStatus::ok && !outcome.summary.message.empty())
+    row.status_reason = outcome.summary.message;
+  if (!outcome.solved()) return;
+  row.set_verdict(outcome.verdict);
+  row.bound_mismatch = bound_mismatch(problem, outcome.solution.impulse);
+}
+
 CombinationName without_parts(std::string solver) { return {"-", "-", std::move(solver)}; }
 
 }  // namespace
@@ -78,7 +81,10 @@ CombinationName without_parts(std::string solver) { return {"-", "-", std::move(
 Combination::Combination(CombinationName name, const RunOptions& options)
     : name_(std::move(name)),
       repeats_(options.repeats),
-      solver_(make_step_solver(name_.solver, solve_options(options))) {
+      erp_(options.extract.erp),
+      cfm_(options.extract.cfm),
+      solver_(make_solver(name_.solver, options)),
+      baseline_(dynamic_cast<OdeBaseline*>(solver_.get())) {
   if (solver_->uses_partition()) {
     splitter_.emplace(name_.partitioner, name_.refiner, options);
   } else {
@@ -98,11 +104,16 @@ Combination::Repeat Combination::repeat(const StepProblem& problem) {
   try {
     outcome.summary = solver_->solve(problem, solver_parts(repeat.split, problem), outcome.solution);
     outcome.status = outcome.summary.status;
+    if (baseline_ != nullptr) outcome.ode_messages = baseline_->messages();
   } catch (const std::bad_alloc&) {
     outcome.status = SolveStatus::out_of_memory;
     outcome.solution = {problem.warm_impulse, problem.free_velocity};
   }
   return repeat;
+}
+
+void Combination::see(const OdeWorld& world, std::span<const ContactPoint> contacts) {
+  if (baseline_ != nullptr) baseline_->see(world, contacts, erp_, cfm_);
 }
 
 void Combination::set_names(StepRecord& row) const {
@@ -132,11 +143,11 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   set_names(row);
   row.repeat_count = repeats_;
   row.status = to_string(chosen.outcome.status);
+  row.ode_messages += chosen.outcome.ode_messages;
   if (splitter_) set_split(repeats, row);
   row.set_summary(chosen.outcome.summary);
   row.t_s_min_ms = std::ranges::min(repeats, {}, total_ms).outcome.summary.times.total_ms;
-  row.set_verdict(chosen.outcome.verdict);
-  row.bound_mismatch = bound_mismatch(problem, chosen.outcome.solution.impulse);
+  set_verdict(problem, chosen.outcome, row);
   if (splitter_) chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
   row.solution_hash = hex(solution_hash(chosen.outcome.solution.impulse, chosen.outcome.part_of_body));
   return std::move(chosen.outcome);
@@ -150,7 +161,7 @@ ConvergedBounds Combination::converge_bounds(StepProblem& problem) {
 std::vector<Combination> make_combinations(const RunOptions& options) {
   std::vector<Combination> splitting, whole;
   const auto ignores_parts = [&](const std::string& solver) {
-    return !make_step_solver(solver, solve_options(options))->uses_partition();
+    return !make_solver(solver, options)->uses_partition();
   };
   for (const std::string& partitioner : options.partitioners)
     for (const std::string& refiner : options.refiners)

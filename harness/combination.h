@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "harness/friction.h"
+#include "harness/ode_baselines.h"
 #include "harness/options.h"
 #include "harness/splitter.h"
 #include "harness/step_record.h"
@@ -32,20 +33,28 @@ struct Outcome {
       SolveStatus::ok;  // the solver's, but not_converged or diverged where the judge disagrees
   SolveSummary summary;
   Solution solution;
+  int ode_messages = 0;           // of ODE's own solvers: messages ODE gave while it solved
   std::vector<int> part_of_body;  // (n) what `measure` split the bodies into; empty where parts are ignored
   ResidualReport verdict;
-  bool finite = false;  // impulses and velocities are numbers; else the world cannot be advanced with them
+  bool finite = false;  // impulses and velocities are numbers
+
+  // There is a result to judge at all.
+  bool solved() const { return status != SolveStatus::refused && status != SolveStatus::crashed; }
+  bool can_advance() const { return solved() && finite; }
 };
 
 class Combination {
  public:
-  // solver: a name make_step_solver accepts; for one that ignores parts the other two names are replaced by
+  // solver: a name make_solver accepts; for one that ignores parts the other two names are replaced by
   // "-".
   Combination(CombinationName name, const RunOptions& options);
 
   const CombinationName& name() const { return name_; }
 
   void set_names(StepRecord& row) const;
+
+  // What the next problems come from, for solvers that are ODE itself; see OdeBaseline. Others ignore it.
+  void see(const OdeWorld& world, std::span<const ContactPoint> contacts);
 
   // Splits and solves once from the problem's warm start.
   Outcome solve(const StepProblem& problem);
@@ -68,7 +77,9 @@ class Combination {
 
   CombinationName name_;
   int repeats_;
+  double erp_, cfm_;
   std::unique_ptr<StepSolver> solver_;
+  OdeBaseline* baseline_;  // solver_ where it is one, else nullptr
   std::optional<Splitter> splitter_;
 };
 

@@ -125,16 +125,17 @@ void require_no_limit_or_motor(dJointID joint, const JointKind& kind, int index)
                              " joint is not extracted from ODE");
 }
 
-// Gives an own parameter that was never set the step's value while ODE fills the rows, and puts it back.
+// Gives an own parameter of a joint another value while ODE fills the rows, and puts it back.
 class StepValue {
  public:
-  StepValue(dJointID joint, const JointKind& kind, int parameter, double world_value, double step_value)
-      : joint_(joint), kind_(kind), parameter_(parameter), world_value_(world_value) {
-    unset_ = kind.own_param && kind.own_param(joint, parameter) == world_value;
-    if (unset_) kind.set_own_param(joint, parameter, step_value);
+  StepValue(dJointID joint, const JointKind& kind, int parameter, double step_value)
+      : joint_(joint), kind_(kind), parameter_(parameter) {
+    if (!kind.own_param) return;
+    own_value_ = kind.own_param(joint, parameter);
+    kind.set_own_param(joint, parameter, step_value);
   }
   ~StepValue() {
-    if (unset_) kind_.set_own_param(joint_, parameter_, world_value_);
+    if (kind_.own_param) kind_.set_own_param(joint_, parameter_, own_value_);
   }
   StepValue(const StepValue&) = delete;
   StepValue& operator=(const StepValue&) = delete;
@@ -143,13 +144,22 @@ class StepValue {
   dJointID joint_;
   const JointKind& kind_;
   int parameter_;
-  double world_value_;
-  bool unset_;
+  double own_value_ = 0;
 };
 
+// A joint's own parameter, or the step's where it was never set.
+double own_or_step(dJointID joint, const JointKind& kind, int parameter, double world_value,
+                   double step_value) {
+  if (!kind.own_param) return step_value;
+  const double own_value = kind.own_param(joint, parameter);
+  return own_value == world_value ? step_value : own_value;
+}
+
 OdeRows ode_rows(dWorldID world, dJointID joint, const JointKind& kind, double h_s, double erp, double cfm) {
-  const StepValue step_erp(joint, kind, dParamERP, dWorldGetERP(world), erp);
-  const StepValue step_cfm(joint, kind, dParamCFM, dWorldGetCFM(world), cfm);
+  const StepValue step_erp(joint, kind, dParamERP,
+                           own_or_step(joint, kind, dParamERP, dWorldGetERP(world), erp));
+  const StepValue step_cfm(joint, kind, dParamCFM,
+                           own_or_step(joint, kind, dParamCFM, dWorldGetCFM(world), cfm));
   OdeRows rows;
   for (auto& pair : rows.rhs_cfm) pair[1] = cfm;  // as dWorldStep presets it
   kind.fill(joint, 1 / h_s, erp, rows);
@@ -211,7 +221,33 @@ void append_joint(const OdeWorld& world, int index, double h_s, double erp, doub
   }
 }
 
+// With an erp of 1 and a step of 1 s ODE's right-hand sides are the position errors.
+double gap_m(dJointID joint, const JointKind& kind) {
+  const StepValue whole_error(joint, kind, dParamERP, 1);
+  OdeRows rows;
+  kind.fill(joint, 1, 1, rows);
+  double sum = 0;
+  for (int r = 0; r < kind.rows; ++r) {
+    const double* linear = rows.jacobian[r];
+    const bool holds_points = linear[0] != 0 || linear[1] != 0 || linear[2] != 0;
+    if (holds_points) sum += rows.rhs_cfm[r][0] * rows.rhs_cfm[r][0];
+  }
+  return std::sqrt(sum);
+}
+
 }  // namespace
+
+double joint_drift_m(const OdeWorld& world) {
+  double widest = 0;
+  const int joints = static_cast<int>(world.content().joints.size());
+  for (int j = 0; j < joints; ++j) {
+    const dJointID joint = world.content().joints[j];
+    if (!dJointIsEnabled(joint)) continue;
+    const double gap = gap_m(joint, extracted_kind(joint, j));
+    if (!(gap <= widest)) widest = gap;
+  }
+  return widest;
+}
 
 void append_joint_rows(const OdeWorld& world, double h_s, double erp, double cfm, const ContactMemory& memory,
                        StepProblem& problem) {

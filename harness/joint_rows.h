@@ -25,4 +25,8 @@ namespace cleave {
 void append_joint_rows(const OdeWorld& world, double h_s, double erp, double cfm, const ContactMemory& memory,
                        StepProblem& problem);
 
+// The widest gap of an enabled joint: the norm of ODE's position error over the rows that hold points
+// together (not those that hold directions), m. 0 without joints.
+double joint_drift_m(const OdeWorld& world);
+
 }  // namespace cleave

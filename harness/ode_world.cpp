@@ -5,8 +5,10 @@
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 #include <tuple>
+#include <utility>
 
 #include "harness/hash.h"
 
@@ -94,11 +96,24 @@ void rotate(dQuaternion q, const double* omega, double h_s) {
   dQMultiply0(q, turn, before);
 }
 
+// What acts on a body, which scenes may change while they run.
+void copy_forces(dBodyID from, dBodyID to) {
+  const dReal *force = dBodyGetForce(from), *torque = dBodyGetTorque(from);
+  dBodySetForce(to, force[0], force[1], force[2]);
+  dBodySetTorque(to, torque[0], torque[1], torque[2]);
+  dBodySetGravityMode(to, dBodyGetGravityMode(from));
+  dBodySetGyroscopicMode(to, dBodyGetGyroscopicMode(from));
+}
+
 }  // namespace
 
 OdeWorld::OdeWorld(const SceneEntry& scene, const SceneSettings& settings, std::uint64_t seed,
                    double gravity_m_per_s2, bool gyroscopic)
-    : scene_(scene.make()), gravity_m_per_s2_(gravity_m_per_s2) {
+    : OdeWorld({scene, settings, seed}, gravity_m_per_s2, gyroscopic, std::nullopt) {}
+
+OdeWorld::OdeWorld(Recipe recipe, double gravity_m_per_s2, bool gyroscopic, std::optional<ErpCfm> preset)
+    : recipe_(std::move(recipe)), scene_(recipe_.scene.make()), gravity_m_per_s2_(gravity_m_per_s2) {
+  const std::uint64_t seed = recipe_.seed;
   initialise_ode();
   dRandSetSeed(static_cast<std::uint32_t>(seed ^ (seed >> 32)));
   world_.reset(dWorldCreate());
@@ -106,7 +121,11 @@ OdeWorld::OdeWorld(const SceneEntry& scene, const SceneSettings& settings, std::
   space_.reset(dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ));
   dWorldSetGravity(world_.get(), 0, 0, -gravity_m_per_s2);
   dWorldSetAutoDisableFlag(world_.get(), 0);
-  content_ = scene_->build(world_.get(), space_.get(), settings, seed);
+  if (preset) {
+    dWorldSetERP(world_.get(), preset->erp);
+    dWorldSetCFM(world_.get(), preset->cfm);
+  }
+  content_ = scene_->build(world_.get(), space_.get(), recipe_.settings, seed);
   assert(dSpaceGetNumGeoms(space_.get()) == static_cast<int>(content_.geoms.size()));
   for (int i = 0; i < body_count(); ++i) {
     dBodySetData(content_.bodies[i], to_data(i));
@@ -114,10 +133,24 @@ OdeWorld::OdeWorld(const SceneEntry& scene, const SceneSettings& settings, std::
   }
   for (int i = 0; i < static_cast<int>(content_.geoms.size()); ++i) {
     if (dGeomGetClass(content_.geoms[i]) == dTriMeshClass)
-      throw std::invalid_argument(std::string("scene '") + scene.name +
+      throw std::invalid_argument(std::string("scene '") + recipe_.scene.name +
                                   "': triangle meshes are not supported");
     dGeomSetData(content_.geoms[i], to_data(i));
   }
+}
+
+std::unique_ptr<OdeWorld> OdeWorld::rebuilt(double erp, double cfm) const {
+  std::unique_ptr<OdeWorld> copy(new OdeWorld(recipe_, gravity_m_per_s2_, true, ErpCfm{erp, cfm}));
+  if (dWorldGetERP(copy->world()) != erp || dWorldGetCFM(copy->world()) != cfm)
+    throw std::runtime_error(std::string("scene '") + recipe_.scene.name +
+                             "' sets ERP or CFM by itself; ODE's own solvers take those of the step");
+  for (int i = 0; i < body_count(); ++i) {
+    copy->set_state(i, state(i));
+    copy_forces(content_.bodies[i], copy->content_.bodies[i]);
+  }
+  for (std::size_t j = 0; j < content_.joints.size(); ++j)
+    (dJointIsEnabled(content_.joints[j]) ? dJointEnable : dJointDisable)(copy->content_.joints[j]);
+  return copy;
 }
 
 std::vector<ContactPoint> OdeWorld::collide(int contact_cap, int* cap_hits) {
@@ -185,6 +218,11 @@ std::uint64_t OdeWorld::state_hash() const {
     hash.add(std::span<const double>(s.velocity));
   }
   return hash.value();
+}
+
+double OdeWorld::last_body_z_m() const {
+  return content_.bodies.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                 : dBodyGetPosition(content_.bodies.back())[2];
 }
 
 double OdeWorld::potential_energy_j() const {

@@ -15,6 +15,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -51,6 +52,11 @@ class OdeWorld {
   OdeWorld(const OdeWorld&) = delete;
   OdeWorld& operator=(const OdeWorld&) = delete;
 
+  // The same scene built anew, with ODE's ERP and CFM set before there is any joint (ball and fixed joints
+  // copy them when they are made), and with bodies and joints as they are now: what ODE itself can step
+  // without this world noticing. Throws std::runtime_error for a scene that sets ERP or CFM by itself.
+  std::unique_ptr<OdeWorld> rebuilt(double erp, double cfm) const;
+
   void before_step(int step) { scene_->before_step(step, content_); }
 
   // All contact points of the present positions, sorted by (lower body, other body or -1, lower geom, other
@@ -70,6 +76,7 @@ class OdeWorld {
   void set_state(int body, const BodyState& state);  // normalises the orientation
   std::uint64_t state_hash() const;  // FNV-1a-64 over position, orientation, velocity of all bodies by index
 
+  double last_body_z_m() const;       // NaN without bodies
   double potential_energy_j() const;  // sum of m g z
   double kinetic_energy_j() const;    // sum of 1/2 m v.v + 1/2 omega.I omega
   double gravity_m_per_s2() const { return gravity_m_per_s2_; }
@@ -85,11 +92,23 @@ class OdeWorld {
   int geom_index(dGeomID geom) const;
 
  private:
+  // What the scene was built from.
+  struct Recipe {
+    SceneEntry scene;
+    SceneSettings settings;
+    std::uint64_t seed;
+  };
+  struct ErpCfm {
+    double erp, cfm;
+  };
+  OdeWorld(Recipe recipe, double gravity_m_per_s2, bool gyroscopic, std::optional<ErpCfm> preset);
+
   struct Destroy {
     void operator()(dWorldID world) const { dWorldDestroy(world); }
     void operator()(dSpaceID space) const { dSpaceDestroy(space); }
   };
 
+  Recipe recipe_;
   // In this order: the space goes before the world, and the scene, which may own vertices of geometry, after
   // both.
   std::unique_ptr<Scene> scene_;

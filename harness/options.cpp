@@ -7,6 +7,7 @@
 
 #include "harness/hash.h"
 #include "harness/nearest_name.h"
+#include "harness/ode_baselines.h"
 #include "harness/options_text.h"
 #include "partition/registry.h"
 #include "solver/registry.h"
@@ -126,6 +127,10 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given) 
   [[maybe_unused]] const Given rest = read_table(given, options);
   assert(rest.empty());
   override_solvers(given, options);
+  for (const SolverEntry& baseline : ode_baselines())
+    if (std::ranges::count(options.solvers, baseline.name) > 0)
+      reject("solver", std::string(baseline.name) +
+                           " is ODE's own and needs the world of a run; a problem file holds none");
   return options;
 }
 

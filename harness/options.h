@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "harness/extract.h"
+#include "harness/ode_baselines.h"
 #include "partition/partitioner.h"
 #include "partition/refiner.h"
 #include "scenarios/scene.h"
@@ -31,7 +32,7 @@ struct RunOptions {
   int steps = 500;
   int measure_every = 1;
   std::vector<int> at;  // ascending: measure these steps only (record); empty: measure_every decides
-  int skip = 0;  // read by reports, not by the run
+  int skip = 0;         // read by reports, not by the run
   int repeats = 3;
   int threads = 1;
   std::uint64_t seed = 1;
@@ -40,6 +41,7 @@ struct RunOptions {
   bool record_motion = false;
   bool reuse_analysis = false;
   int sweeps = 5;
+  OdeBaselineOptions ode_baseline;
 
   ExtractOptions extract;
   double stiffness_n_per_m = std::numeric_limits<double>::quiet_NaN();  // NaN: erp and cfm were given instead

@@ -6,8 +6,8 @@
 #include "harness/nearest_name.h"
 #include "harness/options.h"
 #include "harness/options_text.h"
+#include "harness/solver_choices.h"
 #include "partition/registry.h"
-#include "solver/registry.h"
 
 namespace cleave {
 namespace {
@@ -113,13 +113,17 @@ std::vector<OptionSpec> experiment_options() {
       names("partitioner", names_of(partitioners()), true, "partitioners to compare",
             at(&RunOptions::partitioners)),
       names("refiner", names_of(refiners()), true, "refiners to compare", at(&RunOptions::refiners)),
-      names("solver", all_solver_names(), false,
+      names("solver", solver_choices(), false,
             "solvers to compare; one that ignores parts runs once per step", at(&RunOptions::solvers)),
       text("strategy", "NAME", "strategy in place of that of every --solver", at(&RunOptions::strategy)),
       text("kernel", "NAME", "kernel in place of that of every --solver", at(&RunOptions::kernel)),
       integer("sweeps", kNonNegative, "Gauss-Seidel sweeps: predictor of pivot, length of pgs",
               at(&RunOptions::sweeps)),
-      name("advance", all_solver_names(), "solver that advances the world in lockstep",
+      integer("quickstep-iterations", kAtLeastOne, "iterations of ode-quickstep",
+              at(&RunOptions::ode_baseline, &OdeBaselineOptions::quickstep_iterations)),
+      integer("ode-step-max-rows", kNonNegative, "ode-step refuses a step of more rows: its time explodes",
+              at(&RunOptions::ode_baseline, &OdeBaselineOptions::step_max_rows)),
+      name("advance", solver_choices(), "solver that advances the world in lockstep",
            at(&RunOptions::advance)),
       word("mode", {"lockstep", "separate"},
            "lockstep: all combinations solve the same problems; separate: one world per combination",

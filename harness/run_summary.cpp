@@ -17,8 +17,16 @@ void take_worse(double& worst, double value) {
   if (!(value <= worst)) worst = value;
 }
 
-// Rows of a solver without a judge's number (skipped) say nothing of residuals.
-bool judged(const StepRecord& row) { return row.status != "skipped"; }
+// Rows without a judge's number say nothing of residuals.
+bool judged(const StepRecord& row) {
+  return row.status != "skipped" && row.status != "refused" && row.status != "crashed";
+}
+
+// Why the row is not ok.
+std::string reason(const StepRecord& row) {
+  if (row.status_reason != "-" && !judged(row)) return row.status_reason;
+  return format("residual %.3g m/s", row.residual_m_per_s);
+}
 
 }  // namespace
 
@@ -32,9 +40,10 @@ void RunSummary::add(const StepRecord& row) {
     ++rows_ok;
   } else if (failures.size() < kListedFailures) {
     const std::string file = row.problem_file == "-" ? "" : row.problem_file + " ";
-    failures.push_back(file + format("step %d %s+%s %s: %s, residual %.3g m/s", row.step,
-                                     row.partitioner.c_str(), row.refiner.c_str(), row.solver.c_str(),
-                                     row.status.c_str(), row.residual_m_per_s));
+    failures.push_back(file +
+                       format("step %d %s+%s %s: %s, ", row.step, row.partitioner.c_str(),
+                              row.refiner.c_str(), row.solver.c_str(), row.status.c_str()) +
+                       reason(row));
   }
 }
 
@@ -47,7 +56,7 @@ std::string RunSummary::text() const {
     lines += format("steps advanced by a solution outside the limit: %d\n", inexact_advances);
   if (stopped_worlds > 0)
     lines +=
-        format("worlds stopped early by velocities or positions that are no numbers: %d\n", stopped_worlds);
+        format("worlds stopped early by a solver that gave nothing to move them with: %d\n", stopped_worlds);
   if (unconverged_bounds > 0)
     lines += format("steps on which the friction bounds did not settle: %d\n", unconverged_bounds);
   if (measured_steps > 0 && 5 * measured_with_contacts < measured_steps)

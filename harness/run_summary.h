@@ -17,8 +17,8 @@ struct RunSummary {
   int steps = 0;           // simulated, over all worlds
   int measured_steps = 0;  // or problems replayed
   int measured_with_contacts = 0;
-  int inexact_advances = 0;    // steps advanced by a solution outside the judge's limit
-  int stopped_worlds = 0;      // worlds whose velocities or positions were no numbers any more
+  int inexact_advances = 0;  // steps advanced by a solution outside the judge's limit
+  int stopped_worlds = 0;    // worlds without a solution, or with velocities or positions that are no numbers
   int unconverged_bounds = 0;  // steps on which the bounds of box-converged did not settle
   double worst_residual_m_per_s = 0;
   double worst_velocity_spread_m_per_s = 0;

@@ -3,12 +3,14 @@
 #include <cmath>
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "harness/contact_memory.h"
 #include "harness/extract.h"
 #include "harness/friction.h"
 #include "harness/hash.h"
+#include "harness/joint_rows.h"
 #include "harness/step_columns.h"
 #include "harness/stopwatch.h"
 
@@ -18,6 +20,13 @@ namespace {
 // Positions may overflow where velocities did not; there is nothing to collide then.
 bool is_finite(const OdeWorld& world) {
   return std::isfinite(world.potential_energy_j()) && std::isfinite(world.kinetic_energy_j());
+}
+
+std::string why_stopped(int step, const Outcome& advance) {
+  const std::string stopped = "the world stopped at step " + std::to_string(step) + ": ";
+  if (advance.can_advance()) return stopped + "positions are no numbers";
+  const std::string& message = advance.summary.message;
+  return stopped + to_string(advance.status) + (message.empty() ? "" : ", " + message);
 }
 
 }  // namespace
@@ -45,6 +54,8 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
     common.t_predict_ms = watch.lap_ms();
     common.ode_messages = world.take_message_count();
 
+    show(world, contacts, combinations, advancing);
+
     // Every combination splits the bodies and solves the same problem.
     Measured measured;
     if (is_measured(step)) {
@@ -57,7 +68,7 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
 
     // One solution moves the bodies, and its impulses are where the next step starts from.
     const Outcome advance = advancing.solve(problem);
-    if (advance.finite) {
+    if (advance.can_advance()) {
       world.advance(advance.verdict.velocity, options_.extract.h_s);
       memory.remember(contacts, problem, advance.solution.impulse);
     }
@@ -67,7 +78,8 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
     ++summary_.steps;
     if (advance.status != SolveStatus::ok) ++summary_.inexact_advances;
     progress(summary_.steps, total_steps());
-    if (!advance.finite || !is_finite(world)) return record_skipped(combinations, step + 1, recorder);
+    if (!advance.can_advance() || !is_finite(world))
+      return record_skipped(combinations, step + 1, why_stopped(step, advance), recorder);
   }
 }
 
@@ -94,6 +106,13 @@ RunSummary Simulation::run(CsvRecorder& recorder, const Progress& progress) {
   summary_.wall_s = watch.lap_ms() / 1000;
   summary_.interrupted = stop_;
   return summary_;
+}
+
+// Solvers that are ODE itself need more than the problem.
+void Simulation::show(const OdeWorld& world, std::span<const ContactPoint> contacts,
+                      std::span<Combination> combinations, Combination& advancing) {
+  for (Combination& combination : combinations) combination.see(world, contacts);
+  advancing.see(world, contacts);
 }
 
 StepRecord Simulation::blank_row(int step) const {
@@ -132,10 +151,14 @@ Simulation::Measured Simulation::measure(std::span<Combination> combinations, co
 }
 
 void Simulation::finish_rows(Measured& measured, const OdeWorld& world, const Outcome& advance) {
+  const double drift_m = joint_drift_m(world);
   for (std::size_t i = 0; i < measured.rows.size(); ++i) {
     StepRecord& row = measured.rows[i];
     row.potential_energy_j = world.potential_energy_j();
+    row.joint_drift_m = drift_m;
+    row.last_body_z_m = world.last_body_z_m();
     row.state_hash = hex(world.state_hash());
+    if (!measured.outcomes[i].solved()) continue;
     row.velocity_spread_m_per_s =
         largest_difference(measured.outcomes[i].solution.velocity, advance.verdict.velocity);
   }
@@ -148,12 +171,15 @@ void Simulation::record(std::span<const StepRecord> rows, CsvRecorder& recorder)
 
 // A world that cannot go on leaves rows, not gaps.
 void Simulation::record_skipped(std::span<const Combination> combinations, int first_step,
-                                CsvRecorder& recorder) {
+                                const std::string& reason, CsvRecorder& recorder) {
   ++summary_.stopped_worlds;
   for (int step = first_step; step < options_.steps; ++step) {
     if (!is_measured(step)) continue;
     std::vector<StepRecord> rows(combinations.size(), blank_row(step));
-    for (std::size_t i = 0; i < rows.size(); ++i) combinations[i].set_names(rows[i]);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      combinations[i].set_names(rows[i]);
+      rows[i].status_reason = reason;
+    }
     record(rows, recorder);
   }
 }

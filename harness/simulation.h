@@ -5,6 +5,7 @@
 #include <atomic>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "harness/combination.h"
@@ -47,11 +48,14 @@ class Simulation {
 
   void run_world(std::span<Combination> combinations, Combination& advancing, CsvRecorder& recorder,
                  const Progress& progress);
+  static void show(const OdeWorld& world, std::span<const ContactPoint> contacts,
+                   std::span<Combination> combinations, Combination& advancing);
   void predict_bounds(StepProblem& problem, Combination& advancing);
   Measured measure(std::span<Combination> combinations, const StepProblem& problem, const StepRecord& common);
   void finish_rows(Measured& measured, const OdeWorld& world, const Outcome& advance);
   void record(std::span<const StepRecord> rows, CsvRecorder& recorder);
-  void record_skipped(std::span<const Combination> combinations, int first_step, CsvRecorder& recorder);
+  void record_skipped(std::span<const Combination> combinations, int first_step, const std::string& reason,
+                      CsvRecorder& recorder);
 
   StepRecord blank_row(int step) const;
   int total_steps() const;

@@ -69,6 +69,8 @@ struct StepRecord {
   std::string problem_hash = "-", solution_hash = "-", state_hash = "-";
   double velocity_spread_m_per_s = kUnmeasured;
   std::string problem_file = "-";
+  double joint_drift_m = kUnmeasured, last_body_z_m = kUnmeasured;
+  std::string status_reason = "-";
 
   // Parts of a row that are copied from one result each.
   void set_partition_before(const PartitionMetrics& metrics);
@@ -114,7 +116,8 @@ void visit_fields(Record& r, Visitor&& visit) {
   visit("bodies", r.bodies, "dynamic bodies");
   visit("contacts", r.contacts, "contact points");
   visit("contact_cap_hits", r.contact_cap_hits, "geom pairs that reached the contact cap");
-  visit("ode_messages", r.ode_messages, "messages ODE printed in this step");
+  visit("ode_messages", r.ode_messages,
+        "messages ODE printed in this step, for ODE's own solvers those of the solve among them");
   visit("rows", r.rows, "constraint rows m");
   visit("rows_bilateral", r.rows_bilateral, "joint rows");
   visit("rows_normal", r.rows_normal, "contact normal rows");
@@ -180,6 +183,9 @@ void visit_fields(Record& r, Visitor&& visit) {
   visit("velocity_spread_m_per_s", r.velocity_spread_m_per_s,
         "largest difference between this row's velocities and those that advanced the world");
   visit("problem_file", r.problem_file, "problem file that was recorded or replayed");
+  visit("joint_drift_m", r.joint_drift_m, "widest gap of a joint after the advance, 0 without joints");
+  visit("last_body_z_m", r.last_body_z_m, "height of the last body's centre after the advance");
+  visit("status_reason", r.status_reason, "why the status is not ok, as far as the solver says");
 }
 
 // "run_id,scene,...\n"

@@ -1,4 +1,8 @@
 #include "scenarios/chain_drop.h"
+#include "scenarios/ladder_chain.h"
+#include "scenarios/ladder_free.h"
+#include "scenarios/ladder_loop.h"
+#include "scenarios/ladder_stack.h"
 #include "scenarios/log_tower.h"
 #include "scenarios/rock_pile.h"
 #include "scenarios/scene.h"
@@ -15,6 +19,20 @@ std::span<const SceneEntry> scenes() {
        rock_pile_parameters("200", "100"), make_rock_pile},
       {"large_rock_pile", "three times as many rocks of mixed masses dropped into a square pit",
        "Liu and Andrews 2022, Large Rock Pile", rock_pile_parameters("600", "10,100,1000"), make_rock_pile},
+      {"ladder_stack", "equal boxes in a stack, their contacts reported as often as asked for",
+       "scenarios/README.md", ladder_stack_parameters(), make_ladder_stack},
+      {"ladder_heavy_top", "a heavy box on a stack of light ones", "scenarios/README.md",
+       ladder_heavy_top_parameters(), make_ladder_heavy_top},
+      {"ladder_alternating", "light and heavy boxes in turn in a stack", "scenarios/README.md",
+       ladder_alternating_parameters(), make_ladder_alternating},
+      {"ladder_incline", "boxes that hold or slide on an inclined plane", "scenarios/README.md",
+       ladder_incline_parameters(), make_ladder_incline},
+      {"ladder_chain", "a chain with a heavy bob, hanging from a fixed point", "scenarios/README.md",
+       ladder_chain_parameters(), make_ladder_chain},
+      {"ladder_loop", "a ring of links on hinges that hold some directions twice", "scenarios/README.md",
+       ladder_loop_parameters(), make_ladder_loop},
+      {"ladder_free", "falling boxes that touch nothing", "scenarios/README.md", ladder_free_parameters(),
+       make_ladder_free},
   };
   return table;
 }

@@ -136,10 +136,13 @@ dBodyID SceneBuilder::add_sphere(const Pose& pose, double mass_kg, double radius
   return add_body(pose, mass, {{PlacedGeom{dCreateSphere(space_, radius_m), {}}}});
 }
 
-dBodyID SceneBuilder::add_box(const Pose& pose, double mass_kg, const Vector& edges_m) {
+dBodyID SceneBuilder::add_box(const Pose& pose, double mass_kg, const Vector& edges_m, int copies) {
   dMass mass;
   dMassSetBoxTotal(&mass, mass_kg, edges_m[0], edges_m[1], edges_m[2]);
-  return add_body(pose, mass, {{PlacedGeom{dCreateBox(space_, edges_m[0], edges_m[1], edges_m[2]), {}}}});
+  std::vector<PlacedGeom> geoms;
+  for (int i = 0; i < copies; ++i)
+    geoms.push_back({dCreateBox(space_, edges_m[0], edges_m[1], edges_m[2]), {}});
+  return add_body(pose, mass, geoms);
 }
 
 dBodyID SceneBuilder::add_capsule(const Pose& pose, double mass_kg, double radius_m, double length_m) {
@@ -172,6 +175,14 @@ void SceneBuilder::add_ball_joint(dBodyID a, dBodyID b, const Vector& anchor_m) 
   const dJointID joint = dJointCreateBall(world_, nullptr);
   dJointAttach(joint, a, b);
   dJointSetBallAnchor(joint, anchor_m[0], anchor_m[1], anchor_m[2]);
+  content_.joints.push_back(joint);
+}
+
+void SceneBuilder::add_hinge_joint(dBodyID a, dBodyID b, const Vector& anchor_m, const Vector& axis) {
+  const dJointID joint = dJointCreateHinge(world_, nullptr);
+  dJointAttach(joint, a, b);
+  dJointSetHingeAnchor(joint, anchor_m[0], anchor_m[1], anchor_m[2]);
+  dJointSetHingeAxis(joint, axis[0], axis[1], axis[2]);
   content_.joints.push_back(joint);
 }
 

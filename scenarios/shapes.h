@@ -57,14 +57,19 @@ class SceneBuilder {
   SceneBuilder(dWorldID world, dSpaceID space) : world_(world), space_(space) {}
 
   dBodyID add_sphere(const Pose& pose, double mass_kg, double radius_m);
-  dBodyID add_box(const Pose& pose, double mass_kg, const std::array<double, 3>& edges_m);
+  // copies: coincident boxes on the body. Each touches what is there by itself, so that every contact is
+  // reported once per pair of copies.
+  dBodyID add_box(const Pose& pose, double mass_kg, const std::array<double, 3>& edges_m, int copies = 1);
   // length_m: of the cylindrical part; the round ends come on top.
   dBodyID add_capsule(const Pose& pose, double mass_kg, double radius_m, double length_m);
   dBodyID add_cylinder(const Pose& pose, double mass_kg, double radius_m, double length_m);
   dBodyID add_clump(const Pose& pose, double mass_kg, std::span<const ClumpSphere> spheres);
   // hull: must outlive the geometry.
   dBodyID add_convex(const Pose& pose, double mass_kg, const ConvexHull& hull);
+  // b: nullptr for the static environment. axis: any length but zero.
   void add_ball_joint(dBodyID a, dBodyID b, const std::array<double, 3>& anchor_m);
+  void add_hinge_joint(dBodyID a, dBodyID b, const std::array<double, 3>& anchor_m,
+                       const std::array<double, 3>& axis);
   // Static: everything with normal . x < offset_m is solid. normal: unit.
   void add_plane(const std::array<double, 3>& normal, double offset_m);
   // A floor at z = 0 and four walls without end at x, y = +-half_width_m.

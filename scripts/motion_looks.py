@@ -85,7 +85,7 @@ class Extent:
 
     def node_radius_m(self, motion):
         """Of the graph's balls: small beside the bodies, yet to be seen."""
-        return min(0.009 * self.diagonal_m, 0.75 * float(numpy.median(body_thickness(motion))))
+        return min(0.01 * self.diagonal_m, float(numpy.median(body_thickness(motion))))
 
 
 def ground_polygons(motion, extent):

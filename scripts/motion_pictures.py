@@ -9,6 +9,7 @@ from povray_scene import (CONSTANT_LIGHT, GATHERED_LIGHT, Camera, graph, lights,
 
 GROUND = (0.93, 0.93, 0.925)
 WALL = (0.87, 0.88, 0.89)
+LEVEL = 0.999  # a plane whose normal rises this much is a floor
 INNER_EDGE = (0.45, 0.47, 0.50)  # inside a part
 CUT_EDGE = (0.84, 0.05, 0.10)
 
@@ -27,20 +28,22 @@ class Stage:
         self.camera = Camera.around(self.extent.points, self.extent.radii, self.look.azimuth,
                                     self.look.elevation, self.aspect)
 
-    def render(self, content):
+    def render(self, content, walls=True):
         return render(
             self.light + self.camera.povray(self.aspect) + lights(self.camera, self.extent.diagonal_m) +
-            self._ground() + content, *self.size)
+            self._ground(walls) + content, *self.size)
 
-    def _ground(self):
+    def _ground(self, walls):
         """A lone floor goes on for ever; of a pit only what faces the camera is drawn."""
-        ground = ground_polygons(self.motion, self.extent)
+        ground = [
+            entry for entry in ground_polygons(self.motion, self.extent) if walls or entry[2][2] > LEVEL
+        ]
         if len(ground) == 1:
             floor, _, normal = ground[0]
             return (f"plane {{ {vector(normal)}, {normal @ floor.position:.7g} pigment {{ srgb <1,1,1> }} "
                     "finish { Floor } }\n")
         return "".join(
-            polygon(corners, GROUND if normal[2] > 0.999 else WALL)
+            polygon(corners, GROUND if normal[2] > LEVEL else WALL)
             for _, corners, normal in ground
             if normal @ (self.camera.eye - corners[0]) > 0)
 
@@ -56,7 +59,7 @@ class Stage:
     def graph(self, frame, edges):
         """The constraint graph over the picture: nodes blue, edges red, thinner where there are many."""
         node_m = self.extent.node_radius_m(self.motion)
-        stick_m = 0.3 * node_m * min(1, numpy.sqrt(1.5 * self.motion.bodies / max(len(edges), 1)))
+        stick_m = 0.3 * node_m * min(1, 1.5 * self.motion.bodies / max(len(edges), 1))
         centres = self.motion.position[frame].astype(float)
         return graph(self.camera, centres, edges, (stick_m, EDGE), (node_m, NODE))
 
@@ -67,8 +70,14 @@ def tint_of(motion, look):
     return lambda body: numpy.clip(numpy.array(look.tint) * shade[body], 0, 1)
 
 
-def picture_of_bodies(stage, frame):
-    return stage.render(stage.bodies(frame, tint_of(stage.motion, stage.look)))
+def picture_of_bodies(stage, frame, combination=None):
+    """In the colour of their material, or of the parts of a combination where the step has been split."""
+    motion = stage.motion
+    index = None if combination is None else motion.measured_index(motion.step[frame])
+    if index is None:
+        return stage.render(stage.bodies(frame, tint_of(motion, stage.look)))
+    part = motion.measured["part"][index, combination]
+    return stage.render(stage.bodies(frame, lambda body: part_colour(part[body])))
 
 
 def picture_with_graph(stage, frame, index):
@@ -84,14 +93,15 @@ def picture_of_parts(stage, frame, index, combination):
     part = motion.measured["part"][index, combination]
     centres = motion.position[frame].astype(float)
     reach = body_reach(motion)
-    ball_m = 0.52 * reach
+    ball_m = 0.6 * reach
     text = "".join(
         sphere(centres[body], ball_m[body], part_colour(part[body])) for body in range(motion.bodies))
-    stick_m = 0.09 * float(numpy.median(reach))
+    stick_m = 0.065 * float(numpy.median(reach))
     cut = []
     for a, b in motion.measured.edges(index):
         if part[a] == part[b]:
             text += rod(centres[a], centres[b], 0.8 * stick_m, INNER_EDGE)
         else:
             cut.append((a, b))
-    return stage.render(text + graph(stage.camera, centres, cut, (stick_m, CUT_EDGE)))
+    # Grey walls would only dull the colours.
+    return stage.render(text + graph(stage.camera, centres, cut, (stick_m, CUT_EDGE)), walls=False)

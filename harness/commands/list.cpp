@@ -7,6 +7,7 @@
 #include "harness/commands/command.h"
 #include "harness/friction.h"
 #include "harness/nearest_name.h"
+#include "harness/solver_choices.h"
 #include "harness/step_record.h"
 #include "partition/registry.h"
 #include "scenarios/scene.h"
@@ -47,7 +48,7 @@ constexpr Listing kListings[] = {
     {"scenes", [] { return lines_of(scenes()); }},
     {"partitioners", [] { return lines_of(partitioners()); }},
     {"refiners", [] { return lines_of(refiners()); }},
-    {"solvers", [] { return lines_of(solver_table()); }},
+    {"solvers", [] { return lines_of(solver_entries()); }},
     {"strategies", [] { return lines_of(strategy_table()); }},
     {"kernels", [] { return lines_of(kernel_table()); }},
     {"frictions", [] { return lines_of(friction_models()); }},

@@ -4,7 +4,7 @@ import itertools
 
 import pandas
 
-from cleave_results import NO_PARTITIONER, SCENES, counted, machine
+from cleave_results import NO_PARTITIONER, REFINERS, SCENES, counted, machine
 from figures.style import in_order
 from figures.tree import NoData, need
 from timing_table import SAME_IN_A_SCENE
@@ -12,11 +12,18 @@ from timing_table import SAME_IN_A_SCENE
 # Options that do not change what problem is solved or how it is split; all others are part of the setup.
 RUN_OPTIONS = {
     "scene", "partitioner", "refiner", "solver", "steps", "measure-every", "skip", "repeats", "threads",
-    "seed", "out", "force", "advance"
+    "seed", "out", "force", "advance", "ode-step-max-rows"
 }
 WRITING = ("record", "write", "motion")  # what else a run puts down
 # Options that make a solver another one, with their defaults.
-SOLVER_OPTIONS = {"sweeps": "5", "strategy": "", "kernel": "", "reuse-analysis": "False"}
+SOLVER_OPTIONS = {
+    "sweeps": "5",
+    "strategy": "",
+    "kernel": "",
+    "reuse-analysis": "False",
+    "quickstep-iterations": "20"
+}
+ONLY_OF = {"quickstep-iterations": "ode-quickstep"}  # other solvers ignore it
 SCALING_FOLDER = "scaling"
 
 
@@ -80,13 +87,24 @@ def _is_solver_option(name):
 
 
 def _labels(experiment):
-    """The solver's name with the options that make it another solver: 'pgs, sweeps 100'."""
+    """The solver's name with the options that make it another solver: 'pgs, 100 sweeps'."""
     options = experiment.manifest.get("options", {})
-    extras = [
-        f"{name} {options[name]}" for name in sorted(options)
+    changed = {
+        name: options[name]
+        for name in sorted(options)
         if _is_solver_option(name) and str(options[name]) != SOLVER_OPTIONS.get(name)
-    ]
-    return experiment.rows["solver"].map(lambda solver: ", ".join([solver, *extras]))
+    }
+
+    def label(solver):
+        # With --kernel the program writes pivot:schur-bodies, which says it already.
+        extras = [
+            name if value == "True" else f"{value} {name}"
+            for name, value in changed.items()
+            if value not in solver.split(":") and ONLY_OF.get(name, solver) == solver
+        ]
+        return ", ".join([solver, *extras]).replace("quickstep-iterations", "iterations")
+
+    return experiment.rows["solver"].map(label)
 
 
 def _setup(experiment, rows, columns):
@@ -104,8 +122,8 @@ def main_blocks(blocks, solver):
     """By scene, the blocks behind Figures 3 and 5, Table 1 and the verdicts: repeated runs of one setup.
 
     Scaling runs are no candidates. Taken is the setup with the solver as it is by default, most combinations,
-    most rows, and then the first by name; of its runs those with all these combinations, the longest first.
-    Returns what was left out as lines too.
+    most solves of a cell, most rows, most threads, and then the first by name; of its runs those with all
+    these combinations, in the same order. Returns what was left out as lines too.
     """
     candidates = {}
     for block in blocks:
@@ -115,7 +133,7 @@ def main_blocks(blocks, solver):
             candidates.setdefault(part.scene, {}).setdefault(key, []).append(part)
     chosen, notes = {}, []
     for scene in in_order(candidates, SCENES):
-        every = sorted(itertools.chain(*candidates[scene].values()), key=_preference)
+        every = sorted(itertools.chain(*candidates[scene].values()), key=preference)
         first = every[0]
         same = candidates[scene][first.setup, first.threads, first.label]
         chosen[scene] = [
@@ -128,9 +146,41 @@ def main_blocks(blocks, solver):
     return chosen, notes
 
 
-def _preference(part):
-    return (part.label != part.rows["solver"].iloc[0], -len(combinations(part.rows)), -len(part.rows),
-            part.experiment.name)
+def preference(part):
+    """Sorts blocks of one scene: first the one whose times say most."""
+    return (part.label != part.rows["solver"].iloc[0], -len(combinations(part.rows)), -repeats(part),
+            -len(part.rows), -(part.threads or 0), part.experiment.name)
+
+
+def repeats(part):
+    """How often each cell was solved; where that is unknown, once."""
+    known = part.rows["repeat_count"].dropna() if "repeat_count" in part.rows else ()
+    return known.min() if len(known) else 1
+
+
+def most_steps(blocks, scene, solver, partitioner):
+    """The blocks, repeated runs of one setup, that measured most steps of one partitioner with every refiner.
+
+    Where no run is longer, the one of the paper's experiment, since `preference` decides then.
+    """
+    parts = [
+        part for block in blocks
+        if block.scene == scene and not block.is_scaling and (part := block.of_solver(solver)) is not None
+    ]
+    wanted = {(partitioner, refiner) for refiner in REFINERS}
+    full = [part for part in parts if wanted <= combinations(part.rows)]
+    parts = full or [part for part in parts if partitioner in set(part.rows["partitioner"])]
+    if not parts:
+        raise NoData(f"no rows of {partitioner} in scene {scene}")
+    parts.sort(key=lambda part:
+               (part.label != part.rows["solver"].iloc[0], -step_count(part.rows), preference(part)))
+    first = parts[0]
+    return [
+        part for part in parts
+        if (part.setup, part.threads,
+            part.label) == (first.setup, first.threads,
+                            first.label) and step_count(part.rows) == step_count(first.rows)
+    ]
 
 
 def first_runs(group):

@@ -1,7 +1,8 @@
 """The claims of the paper that can be checked, as figures computed alike from its Table 1 and from our rows.
 
-A claim compares cells. A cell is (place, partitioner, refiner); a place is a scene, or 'rocks 400' for a
-scaling run. Its figure is a function of one number a cell: the mean of a column over the steps, or its peak.
+A claim compares cells. A cell is (place, partitioner, refiner); a place is a scene, 'rocks 400' for a
+scaling run, or the longest run of Log Tower. Its figure is a function of one number a cell: the mean of a
+column over the steps, or its peak.
 """
 import dataclasses
 import functools
@@ -16,6 +17,7 @@ HALF = 0.5  # a gain of stated size is reproduced by at least this share of it
 SAME_EXPONENT = 0.1  # growth exponents this close are the same
 MUCH_FASTER = 5.0  # what 'greatly improved' has to mean
 ROCKS = "rocks"
+LONGEST_LOG_TOWER = "log_tower, longest run"  # peaks are looked for where most steps were measured
 
 
 @dataclasses.dataclass(frozen=True)
@@ -158,7 +160,7 @@ def chain_drop():
 
 def peaks():
     for refiner in ("kl", "fm"):
-        good, base = ("log_tower", "mindp", refiner), ("log_tower", "mindp", "none")
+        good, base = (LONGEST_LOG_TOWER, "mindp", refiner), (LONGEST_LOG_TOWER, "mindp", "none")
         yield Claim("refinement lowers the peaks on Log Tower",
                     cell_name(good),
                     cell_name(base), (good, base),

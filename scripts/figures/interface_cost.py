@@ -69,7 +69,7 @@ def _panel(ax, rows):
         ax.plot(mean["r"], mean["t"], **look, markersize=6, markeredgecolor="white", markeredgewidth=0.6)
     if means["r"].nunique() > 2:
         a, c, share = cubic_trend(means["r"].to_numpy(), means["t"].to_numpy())
-        x = numpy.linspace(0, 1.05 * means["r"].max(), 100)
+        x = numpy.geomspace(0.9 * means["r"].min(), 1.1 * means["r"].max(), 100)
         ax.plot(x,
                 a + c * x**3,
                 color=style.INK,
@@ -77,6 +77,9 @@ def _panel(ax, rows):
                 zorder=1,
                 label=rf"{style.short(a)} ms + {style.short(c * 1e9)} ms $(r / 1000)^3$, $R^2$ {share:.2f}")
         ax.legend(loc="upper left")
-    ax.set(xlabel="interface rows $r$", ylabel="mean $t_s$, ms")
-    ax.set_xlim(left=0)
-    ax.set_ylim(0, 1.2 * means["t"].max())
+    ax.set(xscale="log", yscale="log", xlabel="interface rows $r$", ylabel="mean $t_s$, ms")
+    for axis, values in ((ax.xaxis, means["r"]), (ax.yaxis, means["t"])):
+        digits = (1, 2, 5) if values.max() > 15 * values.min() else (1, 1.5, 2, 3, 4, 5, 6, 8)
+        axis.set_major_locator(style.matplotlib.ticker.LogLocator(subs=digits))
+        axis.set_major_formatter(style.matplotlib.ticker.FuncFormatter(lambda value, _: style.short(value)))
+        axis.set_minor_locator(style.matplotlib.ticker.NullLocator())

@@ -1,6 +1,7 @@
 """What a better kernel does to the value of partitioning: t_s of mindp + none over mix + fm under each."""
 import pandas
 
+from cleave_results import counted
 from figures import solver_groups, style
 from figures.choose import provenance
 from figures.spread import interval, resampled_means
@@ -27,23 +28,29 @@ def strategy_of(solver, kernel):
 
 
 def ratios(parts):
-    """{(strategy, kernel): (ratio, low, high, steps)} where both combinations were measured."""
+    """{strategy: [(ratio, low, high, steps) of each kernel]} on the steps that all four cells solved."""
     rows = pandas.concat([part.ok for part in parts], ignore_index=True)
     if not {"kernel", "t_s_ms"} <= set(rows.columns):
         raise NoData("column kernel or t_s_ms is missing")
+    rows = rows[rows["kernel"].isin(KERNELS)]
+    strategies = [strategy_of(*names) for names in zip(rows["solver"], rows["kernel"])]
+    index = ["seed", "step"] if "seed" in rows else ["step"]
+    cells = [(kernel, *combination) for kernel in KERNELS for combination in (WORSE, BETTER)]
     found = {}
-    for (solver, kernel), frame in rows[rows["kernel"].isin(KERNELS)].groupby(["solver", "kernel"]):
-        index = ["seed", "step"] if "seed" in frame else ["step"]
-        times = frame.pivot_table("t_s_ms", index, ["partitioner", "refiner"])
-        if not {WORSE, BETTER} <= set(times.columns):
-            continue
-        times = times[[WORSE, BETTER]].dropna().to_numpy()
-        times = times[(times > 0).all(axis=1)]
-        if len(times):
-            worse, better = resampled_means(times).T
-            ratio = times[:, 0].mean() / times[:, 1].mean()
-            found[strategy_of(solver, kernel), kernel] = (ratio, *interval(worse / better), len(times))
+    for strategy, frame in rows.groupby(strategies):
+        times = frame.pivot_table("t_s_ms", index, ["kernel", "partitioner", "refiner"])
+        if set(cells) <= set(times.columns):
+            times = times[cells].dropna().to_numpy()
+            times = times[(times > 0).all(axis=1)]
+            if len(times):
+                found[strategy] = [_ratio(times[:, :2]), _ratio(times[:, 2:])]
     return found
+
+
+def _ratio(times):
+    """(ratio, low, high, steps) of two columns."""
+    worse, better = resampled_means(times).T
+    return times[:, 0].mean() / times[:, 1].mean(), *interval(worse / better), len(times)
 
 
 def draw(data):
@@ -51,11 +58,9 @@ def draw(data):
     used = {}
     for name, parts in solver_groups.groups(data.blocks).items():
         found = ratios(parts)
-        for strategy in sorted({key[0] for key in found}):
-            pair = [found.get((strategy, kernel)) for kernel in KERNELS]
-            if all(pair):
-                bars.append((f"{name}\n{strategy}, {pair[0][3]} steps", pair))
-                used[name] = parts
+        for strategy, pair in found.items():
+            bars.append((f"{name}\n{strategy}, {counted(pair[0][3], 'step')}", pair))
+            used[name] = parts
     if not bars:
         raise NoData(
             f"nowhere were both {' '.join(WORSE)} and {' '.join(BETTER)} solved under {KERNELS[0]} and "

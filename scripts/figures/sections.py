@@ -102,10 +102,11 @@ def _viewer(directory):
 
 
 def _summary(data, tables, verdicts, gaps):
-    rows = [experiment.rows["status"] for experiment in data.tree.experiments]
-    failed = sum((status != "ok").sum() for status in rows)
+    rows = [experiment.rows[["status", "solver"]] for experiment in data.tree.experiments]
+    failed = [solver for frame in rows for solver in frame.loc[frame["status"] != "ok", "solver"]]
+    whose = f", of {', '.join(sorted(set(failed)))}" if failed else ""
     entries = [(len(rows), "output directories", ""), (sum(map(len, rows)), "measured rows", ""),
-               (failed, "rows not ok", "no" if failed else "yes")]
+               (len(failed), f"rows not ok{whose}", "no" if failed else "yes")]
     entries += [(sum(item.verdict == verdict
                      for item in verdicts), f"verdicts: {verdict}", css)
                 for verdict, (css, _) in SIGNS.items()]

@@ -1,7 +1,8 @@
 """Setups that several solvers have solved, and their rows on the steps they share."""
 import pandas
 
-from figures.choose import title
+from cleave_results import counted
+from figures.choose import repeats, title
 
 MOST_PANELS = 4
 
@@ -13,23 +14,36 @@ def groups(blocks):
         if not block.is_scaling:
             found.setdefault((block.scene, block.setup, block.threads), []).append(block)
     found = [(key, parts) for key, parts in found.items() if len(_labels(parts)) > 1]
+    for _, parts in found:
+        parts.sort(key=lambda part: (-repeats(part), part.experiment.name))
     found.sort(key=lambda item: (-len(_labels(item[1])), item[1][0].experiment.name))
-    names = [_name(key, parts) for key, parts in found]
-    return {
-        name if names.count(name) == 1 else f"{name}, {_difference(key, found)}": parts
-        for name, (key, parts) in zip(names, found)
-    }
+    names = _unlike([_name(key, parts) for key, parts in found], [_threads(key) for key, _ in found])
+    names = _unlike(names, [_difference(key, found) for key, _ in found])
+    return {name: parts for name, (_, parts) in zip(names, found)}
+
+
+def of_many_solvers(found):
+    """The groups with at least half as many solvers as the first, which has most."""
+    most = max((len(_labels(parts)) for parts in found.values()), default=0)
+    return {name: parts for name, parts in found.items() if 2 * len(_labels(parts)) >= most}
 
 
 def _labels(parts):
     return {label for part in parts for label in part.rows["label"]}
 
 
+def _unlike(names, endings):
+    """The names, those that stand there twice with their ending."""
+    return [name if names.count(name) == 1 else f"{name}, {ending}" for name, ending in zip(names, endings)]
+
+
 def _name(key, parts):
     bodies = parts[0].rows["bodies"].dropna() if "bodies" in parts[0].rows else []
-    size = f", {bodies.iloc[0]:.0f} bodies" if len(bodies) else ""
-    threads = f", {key[2]} thread{'s' if key[2] != 1 else ''}" if key[2] else ""
-    return title(key[0]) + size + threads
+    return title(key[0]) + (f", {bodies.iloc[0]:.0f} bodies" if len(bodies) else "")
+
+
+def _threads(key):
+    return counted(key[2] or "unknown", "thread")
 
 
 def _difference(key, found):

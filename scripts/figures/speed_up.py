@@ -1,13 +1,15 @@
 """Modelled speed-up for 1 to 16 workers, beside what runs with more threads measured."""
 import re
 
+import numpy
 import pandas
 
 from figures import style
-from figures.choose import machines, title
+from figures.choose import machines, preference, title
 from figures.tree import NoData
 
 MODEL = re.compile(r"t_s_model_p(\d+)_ms")
+SPREAD = 1.35  # ratio of the places of the last and the first mark of as many workers
 KEYS = ["seed", "step", "partitioner", "refiner"]
 
 
@@ -30,10 +32,9 @@ def draw(data):
         style.matplotlib.lines.Line2D([], [], **style.line_look("-", name), label=name) for name in refiners
     ]
     style.legend_above(figure, [*style.partitioner_patches(names), *lines], columns=len(names) + len(lines))
-    said = (
-        "Large marks with a black edge: measured, t_s with one thread over t_s with that many on the same "
-        "steps." if measured else
-        "No data: no run with more threads of the same setup, so nothing measured stands beside.")
+    said = ("Marks with a black edge: measured, t_s with one thread over t_s with that many on the same "
+            "steps, spread sideways." if measured else
+            "No data: no run with more threads of the same setup, so nothing measured stands beside.")
     worst = max((fault for fault in faults if fault is not None), default=None)
     check = "" if worst is None else f" The model's single worker is within {worst:.1%} of the measured t_s."
     parts = [part for _, base, others in groups for part in [base, *others]]
@@ -50,8 +51,13 @@ def _groups(data):
             part for block in data.blocks if block.setup == main[0].setup and block.scene == scene and
             (part := block.of_solver(data.solver)) is not None and part.label == main[0].label
         ]
+        same.sort(key=preference)
         base = [part for part in same if part.threads == 1 and model_columns(part.ok)]
-        yield title(scene), base[0] if base else None, [part for part in same if (part.threads or 1) > 1]
+        others = {}
+        for part in same:
+            if (part.threads or 1) > 1:
+                others.setdefault(part.threads, part)
+        yield title(scene), base[0] if base else None, list(others.values())
 
 
 def model_columns(rows):
@@ -64,7 +70,8 @@ def model_columns(rows):
 def _model(ax, rows):
     """Draws the curves; returns the largest relative difference between the single worker and t_s."""
     columns = model_columns(rows)
-    ax.plot(list(columns), list(columns), color=style.GRID, linewidth=3, zorder=1)
+    ideal = numpy.geomspace(1, max(columns), 50)
+    ax.plot(ideal, ideal, color=style.GRID, linewidth=3, zorder=1)
     for (partitioner, refiner), part in rows.groupby(["partitioner", "refiner"]):
         means = part[list(columns.values())].mean()
         look = style.line_look(partitioner, refiner)
@@ -82,15 +89,18 @@ def _measured(ax, base, others):
     drawn = False
     for other in others:
         both = base.ok.merge(other.ok, on=keys, suffixes=("_1", "_n"))
-        for (partitioner, refiner), part in both.groupby(["partitioner", "refiner"]):
+        combinations = list(both.groupby(["partitioner", "refiner"]))
+        for index, ((partitioner, refiner), part) in enumerate(combinations):
             look = style.line_look(partitioner, refiner)
-            ax.plot(other.threads,
+            # Side by side, as many would lie on top of each other.
+            shift = SPREAD**(index / max(len(combinations) - 1, 1) - 0.5)
+            ax.plot(other.threads * shift,
                     part["t_s_ms_1"].mean() / part["t_s_ms_n"].mean(),
                     look["marker"],
-                    markersize=7,
+                    markersize=5,
                     color=look["color"],
                     markeredgecolor=style.INK,
-                    markeredgewidth=0.8,
+                    markeredgewidth=0.6,
                     zorder=5)
             drawn = True
     return drawn

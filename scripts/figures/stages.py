@@ -9,7 +9,9 @@ from figures.choose import provenance, scenes_with, title
 from figures.solver_groups import MOST_PANELS, groups, shared_rows
 from figures.tree import NoData
 
-LONGEST_BAR = 8  # medians
+COLUMNS = 2
+LONGEST_BAR = 3  # medians of a panel; longer bars are cut
+CUT = "Bars that go out of a panel carry their whole length. "
 STAGE = re.compile(r"t_s_(?!min_|model_)(\w+)_ms")
 
 
@@ -29,7 +31,7 @@ def draw_combinations(data):
                                             (frame["refiner"] == refiner)])
                       ] for scene, frame in scenes.items()
     }
-    return _draw(bars), ("Mean time of the stages of a solve, combination by combination. " + gaps +
+    return _draw(bars), ("Mean time of the stages of a solve, combination by combination. " + CUT + gaps +
                          provenance({title(scene): data.main[scene] for scene in scenes}))
 
 
@@ -47,7 +49,7 @@ def draw_solvers(data):
         raise NoData("column t_s_ms is missing or empty")
     return _draw(bars), (
         "Mean time of the stages of a solve for every solver, each with its fastest combination; "
-        "rows that are not ok count too. " +
+        "rows that are not ok count too. " + CUT +
         provenance({name: parts for name, parts in found.items() if name in bars}))
 
 
@@ -69,11 +71,17 @@ def _draw(panels):
     colors = {
         column: style.STAGE_COLORS[index % len(style.STAGE_COLORS)] for index, column in enumerate(stages)
     }
-    most = max(map(len, panels.values()))
-    figure, axes = style.panels(len(panels), 2, 0.165 * most + 0.75)
-    for ax, (name, bars) in zip(axes, panels.items()):
+    counts = list(map(len, panels.values()))
+    most_of_line = [max(counts[first:first + COLUMNS]) for first in range(0, len(counts), COLUMNS)]
+    heights = [0.165 * most + 0.75 for most in most_of_line]
+    figure, axes = style.panels(len(panels),
+                                COLUMNS,
+                                sum(heights) / len(heights),
+                                gridspec_kw={"height_ratios": heights})
+    for index, (ax, (name, bars)) in enumerate(zip(axes, panels.items())):
         ax.set_title(name)
         _panel(ax, bars, colors)
+        ax.set_ylim(most_of_line[index // COLUMNS] - 0.4, -0.6)  # bars of one width in all panels
     handles = [
         style.matplotlib.patches.Patch(color=colors[column], label=stage.replace("_", " "))
         for column, stage in stages.items()
@@ -94,9 +102,10 @@ def _panel(ax, bars, colors):
                 ax.barh(y, width, 0.78, left, color=stage_color)
                 left += width
         if total > limit:
-            ax.text(limit,
+            # The bar is seen on both sides of its length, so that it goes out of the picture.
+            ax.text(0.9 * limit,
                     y,
-                    f"cut, {style.short(total)} ms \u2192",
+                    f"{style.short(total)} ms",
                     ha="right",
                     va="center",
                     fontsize=7,
@@ -109,7 +118,6 @@ def _panel(ax, bars, colors):
     ax.set_yticks(range(len(bars)), [name for _, name, _ in bars], fontsize=7)
     for tick, (combination, *_) in zip(ax.get_yticklabels(), bars):
         tick.set_color(style.readable(style.color(combination[0])))
-    ax.invert_yaxis()
     ax.tick_params(axis="y", length=0)
     ax.grid(axis="y", visible=False)
     ax.set_xlabel("mean $t_s$ per step, ms")

@@ -8,7 +8,7 @@ from cleave_results import counted
 from figures import style
 from figures.claims import HALF
 from figures.verdicts import NOT_REPRODUCED, OPEN, REPRODUCED, RULE, WITHIN_NOISE
-from table_formats import CELL_HELP, GAP, format_ratio
+from table_formats import CELL_HELP, GAP
 
 SIGNS = {
     REPRODUCED: ("yes", "✓"),
@@ -67,13 +67,18 @@ def _table1_cells(table, combination):
     ours = _pair(cell.ours, 3) + (' <span class="gap">!</span>' if cell.remark else "")
     return (f'<td class="group{" lowest" if cell.ours_lowest else ""}">{ours}</td>'
             f'<td{" class=lowest" if cell.paper_lowest else ""}>{_pair(cell.paper, 1)}</td>'
-            f"<td>{format_ratio((cell.ours / cell.paper)[2])}</td>")
+            f"<td>{_ratio((cell.ours / cell.paper)[2])}</td>")
+
+
+def _ratio(value):
+    return GAP if math.isnan(value) else f"{value:#.2g}"
 
 
 def _pair(times, decimals):
     if math.isnan(times.total_ms):
         return '<span class="gap">no data</span>'
-    t_s = f"{times.t_s_ms:.0f}" if times.t_s_ms >= 1000 else f"{times.t_s_ms:.{2 if decimals > 1 else 1}f}"
+    most = 2 if decimals > 1 else 1
+    t_s = f"{times.t_s_ms:.{0 if times.t_s_ms >= 1000 else 1 if times.t_s_ms >= 100 else most}f}"
     return f"{t_s} + {times.t_pr_ms:.{decimals}f}"
 
 

@@ -1,5 +1,6 @@
 """Figure 3 of the paper: average t_s of every example and combination."""
 import itertools
+import statistics
 
 import matplotlib.lines
 
@@ -7,6 +8,7 @@ from figures import style
 from figures.choose import first_runs, provenance, scenes_with, title
 
 BAR_WIDTH = 0.8
+HIGHEST_BAR = 3  # medians of a panel's means; higher bars are cut
 
 MEDIAN = {
     "marker": "o",
@@ -30,7 +32,7 @@ def draw(data):
     caption = (
         "Average time t_s of a solve in every example and combination. Bars are means over the measured "
         "steps, dots medians, lines reach from the lower to the upper quartile over the steps; the lowest "
-        "mean carries its value. ")
+        "mean carries its value in bold. Bars that go out of a panel carry theirs at the top edge. ")
     return figure, caption + gaps + provenance({title(scene): data.main[scene] for scene in scenes})
 
 
@@ -40,11 +42,18 @@ def _panel(ax, rows, all_rows):
         all_rows["refiner"])
     width = BAR_WIDTH / len(refiners)
     times = dict(list(rows.groupby(["partitioner", "refiner"])["t_s_ms"]))
-    lowest = min(times, key=lambda name: times[name].mean())
+    means = {name: values.mean() for name, values in times.items()}
+    lowest = min(means, key=means.get)
+    # One slow combination must not flatten the others.
+    top = 1.12 * max(
+        mean for mean in means.values() if mean <= HIGHEST_BAR * statistics.median(means.values()))
+    ax.set_ylim(0, top or 1)
     for name in itertools.product(partitioners, refiners):
         x = partitioners.index(name[0]) + (refiners.index(name[1]) - (len(refiners) - 1) / 2) * width
         if name in times:
             _bar(ax, x, width, name, times[name], marked=name == lowest)
+            if means[name] > top:
+                _cut_label(ax, x, means[name])
         else:
             run = ((all_rows["partitioner"] == name[0]) & (all_rows["refiner"] == name[1])).any()
             ax.text(x,
@@ -59,7 +68,6 @@ def _panel(ax, rows, all_rows):
     ax.set_xticks(range(len(partitioners)), partitioners)
     ax.tick_params(axis="x", length=0)
     ax.grid(axis="x", visible=False)
-    ax.set_ylim(bottom=0)
     ax.set_ylabel("$t_s$ per step, ms")
 
 
@@ -69,7 +77,8 @@ def _bar(ax, x, width, name, times, marked):
     ax.vlines(x, lower, upper, color=style.INK, linewidth=0.9)
     ax.plot(x, median, **MEDIAN)
     if marked:
-        ax.annotate(style.short(times.mean()), (x, max(times.mean(), upper)), (0, 3),
+        height = min(max(times.mean(), upper), 0.9 * ax.get_ylim()[1])
+        ax.annotate(style.short(times.mean()), (x, height), (0, 3),
                     textcoords="offset points",
                     ha="center",
                     va="bottom",
@@ -81,3 +90,19 @@ def _bar(ax, x, width, name, times, marked):
                         "linewidth": 0,
                         "pad": 0.8
                     })
+
+
+def _cut_label(ax, x, mean):
+    ax.text(x,
+            0.97,
+            style.short(mean),
+            transform=ax.get_xaxis_transform(),
+            rotation=90,
+            ha="center",
+            va="top",
+            fontsize=7,
+            bbox={
+                "facecolor": "white",
+                "linewidth": 0,
+                "pad": 0.6
+            })

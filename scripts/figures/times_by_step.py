@@ -1,15 +1,19 @@
 """Figure 5 of the paper: t_s of every measured step on Log Tower, mindp with each refiner, peaks marked."""
 from figures import style
-from figures.choose import first_runs, provenance, title
-from figures.tree import NoData, need
+from figures.choose import first_runs, most_steps, provenance, title
+from figures.tree import need
 
 SCENE, PARTITIONER = "log_tower", "mindp"
 
 
+def longest_runs(data):
+    """The blocks of the run that measured most steps; more than one where it was repeated."""
+    return most_steps(data.blocks, SCENE, data.solver, PARTITIONER)
+
+
 def draw(data):
-    if SCENE not in data.main:
-        raise NoData(f"no rows of scene {SCENE}")
-    measured = first_runs(data.main[SCENE])
+    blocks = longest_runs(data)
+    measured = first_runs(blocks)
     measured = measured[measured["partitioner"] == PARTITIONER]
     rows = need(measured[measured["status"] == "ok"], "step", "t_s_ms")
     refiners = style.refiners_in(rows["refiner"])
@@ -29,14 +33,14 @@ def draw(data):
         if refiner != refiners[0]:
             ax.fill_between(steps, curves[refiners[0]], color=style.GRID, linewidth=0)
         _curve(ax, refiner, curve)
-    axes.flat[0].set_ylim(0, 1.08 * max(curve.max() for curve in curves.values()) or 1)
-    axes.flat[-1].set_xlabel("step")
+    axes.flat[0].set_ylim(0, 1.15 * max(curve.max() for curve in curves.values()) or 1)
+    axes.flat[-1].set(xlabel="step", xlim=(min(0, steps[0]), steps[-1] + 1))
     failed = " Crosses: steps without a row that is ok." if any(
         curve.isna().any() for curve in curves.values()) else ""
     return figure, (
         f"Time t_s of each measured step of {title(SCENE)}, partitioner {PARTITIONER} with each refiner. "
         f"Triangles mark the highest peak, the grey area is {PARTITIONER} + {refiners[0]} again.{failed} " +
-        provenance({title(SCENE): data.main[SCENE]}))
+        provenance({title(SCENE): blocks}))
 
 
 def _curve(ax, refiner, curve):
@@ -52,7 +56,12 @@ def _curve(ax, refiner, curve):
     for step in curve.index[curve.isna()]:
         ax.plot(step, 0, "x", color=style.FAILED, markersize=5, clip_on=False, zorder=5)
     peak = curve.idxmax()
-    ax.plot(peak, curve[peak], "v", color=style.INK, markersize=6, clip_on=False, zorder=5)
+    ax.annotate("▼", (peak, curve[peak]), (0, 2),
+                textcoords="offset points",
+                ha="center",
+                va="bottom",
+                fontsize=8,
+                annotation_clip=False)
     ax.set_title(f"{PARTITIONER} + {refiner}")
     ax.set_title(
         f"median {style.short(curve.median())} ms, peak {style.short(curve[peak])} ms at step {peak:.0f}",

@@ -10,7 +10,8 @@ from timing_table import NEEDED, SAME_IN_A_SCENE
 
 REQUIRED = ("scene", "step", "partitioner", "refiner", "solver", "status")
 TEXT_COLUMNS = ("run_id", "scene", "partitioner", "refiner", "solver", "strategy", "kernel", "friction",
-                "status", "auto_reason", "problem_hash", "solution_hash", "state_hash", "problem_file")
+                "status", "status_reason", "auto_reason", "problem_hash", "solution_hash", "state_hash",
+                "problem_file")
 TABLE_COLUMNS = {*NEEDED, *SAME_IN_A_SCENE}
 NUMBERS = ("t_", "factor", "interface_", "residual_", "part_", "rows", "bodies", "step", "seed", "threads",
            "repeat_count")  # what columns begin with that are numbers even where no value is one

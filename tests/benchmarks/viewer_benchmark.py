@@ -9,6 +9,7 @@ of 600 bodies:
     build/release/cleave run --scene large_rock_pile --steps 500 --measure-every 10 --record-motion --out DIR
 """
 import argparse
+import os
 import pathlib
 import sys
 import tempfile
@@ -25,7 +26,7 @@ VIEWER = "document.querySelector('.cleave-viewer').cleaveViewer"
 
 
 def frames_per_second(browser, seconds):
-    """While it plays at the speed at which it happened, from a quarter of the run on."""
+    """While it plays at the speed at which it happened, from a quarter of the run on, and with how many pixels."""
     browser.value(f"{VIEWER}.seek({VIEWER}.recording.steps >> 2), {VIEWER}.toggle()")
     time.sleep(0.5)
     before, start = browser.value(f"{VIEWER}.framesDrawn"), time.monotonic()
@@ -33,9 +34,13 @@ def frames_per_second(browser, seconds):
         time.sleep(0.5)
         browser.value(f"{VIEWER}.playing || {VIEWER}.toggle()")
     drawn = browser.value(f"{VIEWER}.framesDrawn") - before
-    rate = drawn / (time.monotonic() - start)
+    rate, size = drawn / (time.monotonic() - start), canvas_size(browser)
     browser.value(f"{VIEWER}.pause()")
-    return rate
+    return f"{rate:.0f} frames/s at {size[0]} x {size[1]}"
+
+
+def canvas_size(browser):
+    return browser.value(f"[{VIEWER}.ui.canvas.width, {VIEWER}.ui.canvas.height]")
 
 
 def measure(page, options):
@@ -44,7 +49,7 @@ def measure(page, options):
         browser.open(page)
         browser.wait_for("document.querySelector('.cleave-viewer')?.cleaveViewer?.framesDrawn > 0")
         opened_s = time.monotonic() - start
-        canvas = browser.value(f"[{VIEWER}.ui.canvas.width, {VIEWER}.ui.canvas.height]")
+        canvas = canvas_size(browser)
         with_graph = frames_per_second(browser, options.seconds)
         browser.value(f"{VIEWER}.ui.graph.click()")
         return opened_s, canvas, with_graph, frames_per_second(browser, options.seconds)
@@ -70,7 +75,7 @@ def main():
           f"{len(motion.combinations)} combinations, window {options.width} x {options.height}, canvas "
           f"{canvas[0]} x {canvas[1]}")
     print(f"page {size_mb:.1f} MB, made in {made_s:.1f} s, opened in {opened_s:.1f} s (aim 3)")
-    print(f"{with_graph:.0f} frames/s with the graph, {without:.0f} without (aim 30)")
+    print(f"{with_graph} with the graph, {without} without (aim 30); load average {os.getloadavg()[0]:.1f}")
 
 
 if __name__ == "__main__":

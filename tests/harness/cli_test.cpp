@@ -6,6 +6,7 @@
 #include "harness/friction.h"
 #include "harness/nearest_name.h"
 #include "harness/options.h"
+#include "harness/solver_choices.h"
 #include "partition/registry.h"
 #include "scenarios/scene.h"
 #include "solver/registry.h"
@@ -165,7 +166,7 @@ TEST(List, ShowsTheRegistries) {
   expect_listed("scenes", names_of(scenes()));
   expect_listed("partitioners", names_of(partitioners()));
   expect_listed("refiners", names_of(refiners()));
-  expect_listed("solvers", names_of(solver_table()));
+  expect_listed("solvers", names_of(std::span<const SolverEntry>(solver_entries())));
   expect_listed("strategies", names_of(strategy_table()));
   expect_listed("kernels", names_of(kernel_table()));
   expect_listed("frictions", names_of(friction_models()));

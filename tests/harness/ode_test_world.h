@@ -32,7 +32,7 @@ inline std::unique_ptr<OdeWorld> make_world(Build build, double gravity = 9.81) 
 }
 
 inline std::unique_ptr<OdeWorld> make_world(const std::function<void(SceneBuilder&)>& build) {
-  return make_world([&](dWorldID world, dSpaceID space, SceneContent& content) {
+  return make_world([build](dWorldID world, dSpaceID space, SceneContent& content) {
     SceneBuilder builder(world, space);
     build(builder);
     content = builder.take();

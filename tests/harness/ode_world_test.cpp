@@ -93,7 +93,8 @@ TEST(State, SameSeedSameHash) {
     const SceneSettings settings = make_scene_settings(entry, {});
     const OdeWorld a(entry, settings, 3, 9.81), b(entry, settings, 3, 9.81), other(entry, settings, 4, 9.81);
     EXPECT_EQ(a.state_hash(), b.state_hash()) << entry.name;
-    EXPECT_NE(a.state_hash(), other.state_hash()) << entry.name;
+    const bool draws = !std::string(entry.name).starts_with("ladder_");  // nothing is random in those
+    EXPECT_EQ(a.state_hash() != other.state_hash(), draws) << entry.name;
   }
 }
 

@@ -40,6 +40,21 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
+// The ladder's scenes are set up to break solvers: nothing is drawn, and a few steps of an iterative solver
+// send bodies anywhere.
+bool of_ladder(const SceneEntry& scene) { return std::string(scene.name).starts_with("ladder_"); }
+
+// Widest gap between the anchors of a ball joint or hinge.
+double gap_m(dJointID joint) {
+  const bool ball = dJointGetType(joint) == dJointTypeBall;
+  EXPECT_TRUE(ball || dJointGetType(joint) == dJointTypeHinge);
+  dVector3 a, b, gap;
+  (ball ? dJointGetBallAnchor : dJointGetHingeAnchor)(joint, a);
+  (ball ? dJointGetBallAnchor2 : dJointGetHingeAnchor2)(joint, b);
+  dSubtractVectors3(gap, a, b);
+  return dCalcVectorLength3(gap);
+}
+
 // Position, orientation and mass of every body.
 std::vector<double> snapshot(const SceneContent& content) {
   std::vector<double> values;
@@ -71,14 +86,7 @@ TEST(SceneContract, StartsAtRestWithoutOverlap) {
       SceneWorld world(*c.scene, c.given, seed);
       EXPECT_LE(world.collide().largest_depth_m, 1e-6) << describe(c) << " seed " << seed;
       for (const dBodyID body : world.content().bodies) EXPECT_EQ(speed_m_per_s(body), 0) << describe(c);
-      for (const dJointID joint : world.content().joints) {
-        ASSERT_EQ(dJointGetType(joint), dJointTypeBall);
-        dVector3 a, b, gap;
-        dJointGetBallAnchor(joint, a);
-        dJointGetBallAnchor2(joint, b);
-        dSubtractVectors3(gap, a, b);
-        EXPECT_LT(dCalcVectorLength3(gap), 1e-12) << describe(c);
-      }
+      for (const dJointID joint : world.content().joints) EXPECT_LT(gap_m(joint), 1e-12) << describe(c);
     }
   }
 }
@@ -89,7 +97,9 @@ TEST(SceneContract, BodiesHaveMassInertiaAndGeometry) {
     ASSERT_FALSE(world.content().bodies.empty()) << describe(c);
     std::map<dBodyID, int> geoms_of;
     for (const dGeomID geom : world.content().geoms) ++geoms_of[dGeomGetBody(geom)];
-    EXPECT_GT(geoms_of[nullptr], 0) << describe(c) << ": nothing to fall on";
+    if (!of_ladder(*c.scene)) {
+      EXPECT_GT(geoms_of[nullptr], 0) << describe(c) << ": nothing to fall on";
+    }
     for (const dBodyID body : world.content().bodies) {
       dMass mass;
       dBodyGetMass(body, &mass);
@@ -106,12 +116,13 @@ TEST(SceneContract, TheSeedAndNothingElseDecides) {
     if (c.given.size() > 1) continue;
     SceneWorld a(*c.scene, c.given, 5), b(*c.scene, c.given, 5), other(*c.scene, c.given, 6);
     EXPECT_EQ(snapshot(a.content()), snapshot(b.content())) << describe(c);
-    EXPECT_NE(snapshot(a.content()), snapshot(other.content())) << describe(c);
+    EXPECT_EQ(snapshot(a.content()) == snapshot(other.content()), of_ladder(*c.scene)) << describe(c);
   }
 }
 
 TEST(SceneContract, NothingFallsThroughTheStaticPlanes) {
   for (const SceneEntry& scene : scenes()) {
+    if (of_ladder(scene)) continue;
     Given small;
     for (const SceneParameter& parameter : scene.parameters)
       if (parameter.type == SceneParameter::Type::integer)

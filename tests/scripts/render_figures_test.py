@@ -158,7 +158,8 @@ class CommandTest(Scratch):
         motion_data.write_motion(self.directory)
         self.assert_refused("'figure9' is unknown; choices: figure1, figure2, film_strip", "--only",
                             "figure9")
-        self.assert_refused("--every 0", "--every", 0)
+        self.assert_refused("--every is 0", "--every", 0)
+        self.assert_refused("--columns is 0", "--columns", 0)
 
     def assert_refused(self, words, *arguments):
         result = self.render(*arguments)

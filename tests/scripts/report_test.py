@@ -11,7 +11,7 @@ from report_data import PAPER, manifest, report_row, rows_of, whole_system, writ
 from synthetic import run_script, write_manifest, write_steps
 
 from cleave_results import NO_PARTITIONER, PARTITIONERS
-from figures import data, solver_groups, style, trade_off, tree
+from figures import data, kernel_value, solver_groups, style, times_by_step, trade_off, tree
 from figures.registry import FIGURES
 from figures.tables import scene_tables
 from figures.tree import NoData
@@ -141,7 +141,63 @@ class NewcomersTest(TreeTest):
         for sweeps in (5, 50):
             write_run(self.directory / str(sweeps), whole_system("pgs"), sweeps=sweeps)
         parts, = solver_groups.groups(data.load(self.directory, "schur").blocks).values()
-        self.assertEqual(set(trade_off.points(parts)["label"]), {"pgs", "pgs, sweeps 50"})
+        self.assertEqual(set(trade_off.points(parts)["label"]), {"pgs", "pgs, 50 sweeps"})
+
+    def test_an_option_of_one_solver_does_not_rename_the_others(self):
+        rows = [row for name in ("ode-quickstep", "ode-step", "monolithic") for row in whole_system(name)]
+        write_run(self.directory / "a", rows, **{"quickstep-iterations": 200, "ode-step-max-rows": 500})
+        write_run(self.directory / "b",
+                  rows_of("rock_pile", solver="pivot:schur-bodies"),
+                  kernel="schur-bodies")
+        parts, = solver_groups.groups(data.load(self.directory, "schur").blocks).values()
+        self.assertEqual(set(trade_off.points(parts)["label"]),
+                         {"ode-quickstep, 200 iterations", "ode-step", "monolithic", "pivot:schur-bodies"})
+
+    def test_figures_are_of_the_run_that_was_solved_most_often_and_peaks_of_the_longest(self):
+        write_run(self.directory / "motion", rows_of("log_tower", steps=range(90), repeat_count=1))
+        write_run(self.directory / "paper", rows_of("log_tower"))
+        write_run(self.directory / "paper_1", rows_of("log_tower"), threads=1)
+        long = rows_of("log_tower", ("mindp",), steps=range(90), threads=2)
+        long[0]["step"] = 95
+        write_run(self.directory / "every_step",
+                  [*long, *rows_of("log_tower", ("mindp",), steps=(96,), threads=2)])
+        loaded = data.load(self.directory, "schur")
+        self.assertEqual(loaded.main["log_tower"][0].experiment.name, "paper")
+        runs = times_by_step.longest_runs(loaded)
+        self.assertEqual([part.experiment.name for part in runs], ["every_step"])
+        self.assertIn("Measured steps: Log Tower 92.", self.drawn()["figure5"])
+
+    def test_a_bar_far_above_the_others_is_cut_and_carries_its_value(self):
+        rows = rows_of("log_tower")
+        for row in rows:
+            row["t_s_ms"] = 1234 if (row["partitioner"], row["refiner"]) == ("maxdp", "kl") else 10
+        write_run(self.directory / "log_tower", rows)
+        loaded = data.load(self.directory, "schur")
+        for name, text in (("figure3", "1234"), ("stages", "1234 ms")):
+            figure = next(entry for entry in FIGURES if entry.name == name).draw(loaded)[0]
+            texts = [label.get_text() for label in figure.axes[0].texts]
+            self.assertIn(text, texts, name)
+            self.assertLess(
+                max(figure.axes[0].get_ylim()[1 if name == "figure3" else 0], figure.axes[0].get_xlim()[1]),
+                40)
+            style.pyplot.close(figure)
+
+    def test_kernels_are_compared_on_the_steps_that_both_solved(self):
+        some = {"partitioners": ("mindp", "mix"), "refiners": ("none", "fm")}
+        rows = rows_of("rock_pile", *some.values())
+        for row in rows:
+            row["t_s_ms"] = 20 if row["partitioner"] == "mindp" and row["step"] < 50 else 10
+        write_run(self.directory / "a", rows)
+        write_run(self.directory / "b", [
+            dict(row, solver="pivot:schur-bodies", kernel="schur-bodies", t_s_ms=5)
+            for row in rows
+            if row["step"] < 50
+        ],
+                  kernel="schur-bodies")
+        parts, = solver_groups.groups(data.load(self.directory, "schur").blocks).values()
+        rows_kernel, bodies_kernel = kernel_value.ratios(parts)["pivot"]
+        self.assertEqual((rows_kernel[0], rows_kernel[3]), (2, 5))
+        self.assertEqual((bodies_kernel[0], bodies_kernel[3]), (1, 5))
 
     def test_runs_of_different_setups_are_not_mixed(self):
         write_run(self.directory / "a", rows_of("rock_pile"))

@@ -1,6 +1,7 @@
 """Verdicts, fits and intervals against data whose answers are known."""
 import pathlib
 import tempfile
+import types
 import unittest
 
 import numpy
@@ -8,7 +9,7 @@ import pandas
 from report_data import PAPER, rows_of, write_run
 
 from cleave_results import SCENES
-from figures import data, interface_cost, ladder_map, spread, times_by_size, verdicts
+from figures import data, interface_cost, ladder_map, spread, style, times_by_size, verdicts
 
 
 def judged(directory):
@@ -73,20 +74,50 @@ class VerdictTest(unittest.TestCase):
             row["t_s_ms"] = row["t_s_min_ms"] = float(numpy.exp(random.normal(0, 1)))
 
         work = {"none": 10, "kl": 7, "fm": 5}
-        for better, sign, expected in ((work, 1, verdicts.REPRODUCED), (work, -1, verdicts.NOT_REPRODUCED),
-                                       (None, 1, verdicts.WITHIN_NOISE)):
+        said, peaks = ("mindp + fm, said 31",), ("peaks", "mindp + fm")  # the latter states no size
+        for words, sign, rows_sign, expected in ((said, 1, 1, verdicts.REPRODUCED), (said, -1, -1,
+                                                                                     verdicts.NOT_REPRODUCED),
+                                                 (peaks, -1, 1, verdicts.WITHIN_NOISE)):
 
-            def change(row, better=better, sign=sign):
+            def change(row, sign=sign, rows_sign=rows_sign):
                 noisy(row)
-                size = (work[row["refiner"]] if better else 10)**sign
-                rows_cut = work[row["refiner"]]**sign
+                size = work[row["refiner"]]**sign
+                rows_cut = work[row["refiner"]]**rows_sign
                 row.update(factor_mflop_local=0, factor_mflop_interface=size, interface_rows=1000 * rows_cut)
 
             self.write(change, ("log_tower",))
-            item = pick(judged(self.directory), "mindp + fm, said 31")
+            item = pick(judged(self.directory), *words)
             self.assertLess(item.low, item.least)
             self.assertGreater(item.high, item.least)
             self.assertEqual(item.verdict, expected)
+
+    def test_a_gain_that_is_too_small_by_mflop_is_not_reproduced_though_interface_rows_fall(self):
+        random = numpy.random.default_rng(3)
+        work = {"none": 1.0, "kl": 0.98, "fm": 0.95}
+
+        def change(row):
+            row["t_s_ms"] = row["t_s_min_ms"] = float(numpy.exp(random.normal(0, 1)))
+            row.update(factor_mflop_local=0,
+                       factor_mflop_interface=work[row["refiner"]],
+                       interface_rows=1000 * work[row["refiner"]])
+
+        self.write(change, ("log_tower",))
+        item = pick(judged(self.directory), "mindp + fm, said 31")
+        self.assertGreater(item.interface_rows, 0)
+        self.assertEqual(item.verdict, verdicts.NOT_REPRODUCED)
+        self.assertIn("too small", item.reason)
+
+    def test_counted_columns_that_are_the_same_decide_nothing(self):
+        random = numpy.random.default_rng(3)
+
+        def change(row):
+            row["t_s_ms"] = row["t_s_min_ms"] = float(numpy.exp(random.normal(0, 1)))
+            row.update(factor_mflop_local=1, factor_mflop_interface=2, interface_rows=300)
+
+        self.write(change, ("log_tower",))
+        item = pick(judged(self.directory), "peaks", "mindp + fm")
+        self.assertEqual((item.mflop, item.interface_rows), (0, 0))
+        self.assertEqual(item.verdict, verdicts.WITHIN_NOISE)
 
     def test_noise_without_counted_columns_stays_noise(self):
         random = numpy.random.default_rng(4)
@@ -216,6 +247,23 @@ class LadderTest(unittest.TestCase):
     def test_a_rung_holds_only_when_all_its_rows_do(self):
         ladder = self.ladder(["stiff cfm 1 a ok", "stiff cfm 1 a crashed", "stiff cfm 0 a ok"])
         self.assertEqual(ladder_map.climb(ladder, "stiff", "a"), (0.0, "1"))
+
+    def test_physics_is_judged_apart_where_there_is_such_a_column(self):
+        ladder = self.ladder(["stiff cfm 1 a ok", "stiff cfm 0 a ok"])
+        ladder["physics"] = ["ok", "too_low"]
+        self.assertEqual(ladder_map.climb(ladder, "stiff", "a", "status"), (1.0, None))
+        self.assertEqual(ladder_map.climb(ladder, "stiff", "a", "physics"), (0.5, "0"))
+        for columns in (ladder.columns, ladder.columns.drop("physics")):
+            figure = ladder_map.draw(
+                types.SimpleNamespace(tree=types.SimpleNamespace(ladder=ladder[columns])))[0]
+            titles = [ax.get_title(loc="left") for ax in figure.axes if ax.get_title(loc="left")]
+            self.assertEqual(len(titles), 1 + ("physics" in columns))
+            style.pyplot.close(figure)
+
+    def test_values_are_short(self):
+        for value, text in (("0.016666666666666666", "0.0167"), ("100000", "1e5"), ("1e-06", "1e-6"),
+                            ("0", "0"), ("500", "500"), ("high", "high")):
+            self.assertEqual(ladder_map._short(value), text)
 
     def test_rungs_with_a_name_of_their_own_are_grouped_by_parameter(self):
         ladder = self.ladder(["cfm_a cfm 1 a ok", "cfm_b cfm 0 a diverged"])

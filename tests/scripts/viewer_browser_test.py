@@ -76,12 +76,13 @@ class ViewerTest(unittest.TestCase):
     def test_keys_step_and_play(self):
         self.open()
         frames = []
-        for key, shift in (("ArrowRight", False), ("ArrowRight", True), ("ArrowLeft", False), ("End", False),
-                           ("ArrowRight", False), ("Home", False)):
+        self.assertEqual(self.browser.value("it().frame"), 29)  # it opens at the end
+        for key, shift in (("Home", False), ("ArrowRight", False), ("ArrowRight", True), ("ArrowLeft", False),
+                           ("End", False), ("ArrowRight", False), ("Home", False)):
             self.browser.press(key, shift)
             self.settle()
             frames.append(self.browser.value("it().frame"))
-        self.assertEqual(frames, [1, 11, 10, 29, 29, 0])
+        self.assertEqual(frames, [0, 1, 11, 10, 29, 29, 0])
         self.browser.press(" ")
         self.browser.wait_for("it().frame > 3")
         self.browser.press(" ")
@@ -94,14 +95,14 @@ class ViewerTest(unittest.TestCase):
     def test_a_click_turns_the_keys_to_the_viewer(self):
         self.open()
         self.browser.value("document.activeElement.blur()")
-        self.browser.press("End")
-        self.settle()
-        self.assertEqual(self.browser.value("it().frame"), 0)
-        x, y, width, height = self.browser.place(CANVAS)
-        self.browser.click(x + 5, y + 5)
-        self.browser.press("End")
+        self.browser.press("Home")
         self.settle()
         self.assertEqual(self.browser.value("it().frame"), 29)
+        x, y, width, height = self.browser.place(CANVAS)
+        self.browser.click(x + 5, y + 5)
+        self.browser.press("Home")
+        self.settle()
+        self.assertEqual(self.browser.value("it().frame"), 0)
 
     def test_playing_ends_at_the_last_step_and_starts_again_from_the_first(self):
         self.open()
@@ -174,6 +175,36 @@ class ViewerTest(unittest.TestCase):
         self.assertRegex(legends[2], r"m/s, logarithmic")
         self.assertRegex(legends[3], r"N s, logarithmic")
 
+    def test_edges_are_red_between_parts_and_where_there_are_no_parts(self):
+        self.open()
+        self.browser.press("End")
+        a, b = motion_data.EDGES.T
+        part = motion_data.part_of(9, 0)
+        for name, red in (("mindp + none, schur", part[a] != part[b]), ("pgs", a >= 0)):
+            self.choose("combination", name)
+            self.settle()
+            shown = self.browser.value("""(() => {
+                const {colour} = it().graph.sticks.geometry.attributes;
+                return Array.from({length: 6}, (_, edge) => colour.getX(4 * edge) > 3 * colour.getY(4 * edge));
+            })()""")
+            self.assertEqual(shown, red.tolist(), name)
+
+    def test_a_slow_machine_gets_fewer_pixels_while_it_plays_and_all_of_them_afterwards(self):
+        self.open()
+        full = self.browser.value("it().ui.canvas.width")
+        # As if every picture had taken a tenth of a second.
+        self.browser.value("(() => { let at = 0; it().pace.note = function() { "
+                           "Object.getPrototypeOf(this).note.call(this, at += 100); }; })()")
+        self.choose("speed", "0.1")
+        self.browser.press(" ")
+        self.browser.wait_for("it().stage.share === 0.5")
+        self.assertAlmostEqual(self.browser.value("it().ui.canvas.width"), full / 2, delta=1)
+        self.assertIn("fewer pixels", self.browser.value("it().ui.note.textContent"))
+        self.browser.press(" ")
+        self.settle()
+        self.assertEqual(self.browser.value("it().ui.canvas.width"), full)
+        self.assertEqual(self.browser.problems, [])
+
     def test_the_graph_can_be_left_out(self):
         self.open()
         self.browser.press("End")
@@ -221,9 +252,9 @@ class ViewerTest(unittest.TestCase):
     def test_several_recordings_can_be_chosen(self):
         self.open("first", "second")
         before = self.canvas()
-        self.browser.press("End")
+        self.browser.press("Home")
         self.choose("recording", "second: rock_pile, 6 bodies, seed 1")
-        self.browser.wait_for(f"{READY} && it().frame === 0 && it().ui.recording.selectedIndex === 1")
+        self.browser.wait_for(f"{READY} && it().frame === 29 && it().ui.recording.selectedIndex === 1")
         numpy.testing.assert_allclose(self.canvas(), before, atol=0.02)
         self.assertEqual(self.browser.problems, [])
 

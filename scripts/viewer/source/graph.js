@@ -4,7 +4,8 @@
 // is one point and a stick two triangles, so that thousands of them are quick without a graphics card too.
 import * as THREE from 'three';
 
-const CUT = new THREE.Color(0xffb000);  // sticks between parts, also twice as thick
+// Sticks inside a part. Those between parts are red and thicker, as all are of a solver that has no parts.
+const INNER = new THREE.Color(0x6f757d);
 
 export class Graph {
   constructor(recording) {
@@ -41,13 +42,14 @@ export class Graph {
     let i = 0;
     for (let edge = first; edge < last; ++edge) {
       const a = recording.edge[2 * edge], b = recording.edge[2 * edge + 1], cut = part(a) !== part(b);
-      const {r, g, b: blue} = cut ? CUT : this.edgeColour;
+      const inner = !cut && part(a) !== recording.no_part;
+      const {r, g, b: blue} = inner ? INNER : this.edgeColour;
       this.cutPairs += cut;
       for (const corner = i + 4; i < corner; ++i) {
         start.setXYZ(i, at[3 * a], at[3 * a + 1], at[3 * a + 2]);
         end.setXYZ(i, at[3 * b], at[3 * b + 1], at[3 * b + 2]);
         colour.setXYZ(i, r, g, blue);
-        radius.setX(i, recording.node_radius_m * (cut ? 0.5 : 0.25));
+        radius.setX(i, recording.node_radius_m * (cut ? 0.4 : 0.2));
       }
     }
     this.sticks.geometry.setDrawRange(0, 6 * (last - first));

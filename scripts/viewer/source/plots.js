@@ -35,15 +35,15 @@ export class Plots {
     context.font = '11px system-ui, sans-serif';
     const inner = (height - TOP - GAP - BOTTOM) / 2;
     const {tSMs, interfaceRows} = this.recording;
-    this.drawOne(context, {label: 't_s, ms', values: tSMs, top: TOP, height: inner, width, combination});
-    this.drawOne(context, {
+    // Times of slow combinations and steps are a hundred times those of the others.
+    const times = {label: 't_s, ms, logarithmic', values: tSMs, scale: logarithmic(tSMs), top: TOP};
+    const rows = {
       label: 'interface rows',
       values: interfaceRows,
-      top: TOP + inner + GAP,
-      height: inner,
-      width,
-      combination
-    });
+      scale: linear(interfaceRows),
+      top: TOP + inner + GAP
+    };
+    for (const curves of [times, rows]) this.drawOne(context, {...curves, height: inner, width, combination});
     this.drawSteps(context, width, height);
   }
 
@@ -59,26 +59,22 @@ export class Plots {
     return Math.round((x - LEFT) / (this.canvas.clientWidth - LEFT - RIGHT) * this.lastStep);
   }
 
-  drawOne(context, {label, values, top, height, width, combination}) {
+  drawOne(context, {label, values, scale, top, height, width, combination}) {
     const count = this.recording.combinationCount;
-    let most = 0;
-    for (const value of values)
-      if (value > most) most = value;
-    const tick = niceTick(most), ceiling = Math.max(tick, Math.ceil(most / tick) * tick);
-    const y = (value) => top + height * (1 - value / ceiling);
+    const y = (value) => top + height * (1 - scale.place(value));
     context.fillStyle = TEXT;
     context.textAlign = 'left';
     context.fillText(label, LEFT, top - 6);
     context.textAlign = 'right';
     context.strokeStyle = '#e2e6ec';
     context.lineWidth = 1;
-    for (let value = 0; value <= ceiling + tick / 2; value += tick) {
+    for (const value of scale.ticks) {
       context.fillText(String(Number(value.toPrecision(6))), LEFT - 6, y(value) + 4);
       line(context, [[LEFT, y(value)], [width - RIGHT, y(value)]]);
     }
     const points = (c) => [...this.recording.curveStep]
                               .map((step, k) => [this.x(step), values[k * count + c]])
-                              .filter(([, value]) => value >= 0)
+                              .filter(([, value]) => value >= scale.ticks[0])
                               .map(([x, value]) => [x, y(value)]);
     context.strokeStyle = OTHERS;
     for (let c = 0; c < count; ++c)
@@ -113,6 +109,35 @@ function line(context, points) {
   if (points.length === 1) points.push([points[0][0] + 2, points[0][1]]);
   points.forEach(([x, y], i) => (i === 0 ? context.moveTo(x, y) : context.lineTo(x, y)));
   context.stroke();
+}
+
+// Scales: where values stand between 0 and 1, and the values that are written beside the axis, the least
+// first.
+
+function linear(values) {
+  let most = 0;
+  for (const value of values)
+    if (value > most) most = value;
+  const tick = niceTick(most), count = Math.max(1, Math.ceil(most / tick));
+  return {
+    place: (value) => value / (count * tick),
+    ticks: Array.from({length: count + 1}, (_, i) => i * tick),
+  };
+}
+
+// Whole powers of ten; values that are not positive have no place.
+function logarithmic(values) {
+  let least = Infinity, most = 0;
+  for (const value of values) {
+    if (value > 0 && value < least) least = value;
+    if (value > most) most = value;
+  }
+  const first = most > 0 ? Math.floor(Math.log10(least)) : 0;
+  const last = most > 0 ? Math.max(Math.ceil(Math.log10(most)), first + 1) : 1;
+  return {
+    place: (value) => (Math.log10(value) - first) / (last - first),
+    ticks: Array.from({length: last - first + 1}, (_, i) => 10 ** (first + i)),
+  };
 }
 
 // A round number that divides a range into two to five parts.

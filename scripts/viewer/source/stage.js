@@ -17,6 +17,7 @@ export class Stage {
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.addEventListener('change', onChange);
     this.front = new THREE.Scene();
+    this.share = 1;  // of the window's pixels along each side
   }
 
   // A new world with its bodies and graph.
@@ -48,13 +49,20 @@ export class Stage {
     this.sun.shadow.normalBias = 0.004 * r;
   }
 
+  // Until the next change; the picture has to be drawn again.
+  setShare(share) {
+    if (share === this.share) return;
+    this.share = share;
+    this.fit();
+  }
+
   setShadows(on) {
     this.sun.castShadow = on;
   }
 
   fit() {
     const width = this.canvas.clientWidth, height = this.canvas.clientHeight;
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.setPixelRatio(this.share * Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / Math.max(height, 1);
     this.camera.updateProjectionMatrix();

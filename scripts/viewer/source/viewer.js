@@ -1,6 +1,7 @@
 // One viewer: what it shows, and the controls that change it.
 import {Bodies} from './bodies.js';
 import {Graph} from './graph.js';
+import {Pace} from './pace.js';
 import {Plots} from './plots.js';
 import {Stage} from './stage.js';
 
@@ -22,6 +23,7 @@ export class Viewer {
     this.stage = new Stage(this.ui.canvas, () => this.change());
     this.plots = new Plots(this.ui.curves, this.ui.mark, (step) => this.seekStep(step));
     this.ui.shadows.checked = !this.stage.software;
+    this.pace = new Pace();
     this.frame = 0;
     this.framesDrawn = 0;
     this.playing = false;
@@ -47,9 +49,10 @@ export class Viewer {
     this.ui.step.max = this.recording.steps - 1;
     this.ui.note.textContent = this.recording.note +
         (this.stage.software ?
-             'This browser draws without a graphics card: smooth edges and shadows are off.' :
+             'This browser draws without a graphics card: smooth edges and shadows are off, and while a run ' +
+                 'plays its pictures have fewer pixels where 30 a second would not be reached.' :
              '');
-    this.frame = 0;
+    this.frame = this.recording.steps - 1;  // where there are parts and all bodies are in view
     this.painted = '';
     this.section.dataset.state = 'ready';
     this.resize();
@@ -118,6 +121,10 @@ export class Viewer {
   pause() {
     this.playing = false;
     this.ui.play.textContent = 'Play';
+    this.pace.restart();
+    if (this.stage.share === 1) return;
+    this.stage.setShare(1);
+    this.change();
   }
 
   seekStep(step) {
@@ -173,6 +180,10 @@ export class Viewer {
   // Playback follows the clock, not the number of pictures: a slow machine leaves steps out.
   advance(time_ms) {
     if (!this.playing) return;
+    if (this.stage.software) {
+      this.pace.note(time_ms);
+      this.stage.setShare(this.pace.share);
+    }
     if (this.clock === undefined) this.clock = {time_ms, from: this.recording.step[this.frame]};
     const passed = (time_ms - this.clock.time_ms) / 1000 * Number(this.ui.speed.value);
     const step = this.clock.from + passed / this.recording.h_s;

@@ -1,0 +1,182 @@
+#include "harness/ode_baselines.h"
+
+#include <ode/ode.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cassert>
+#include <stdexcept>
+#include <string>
+
+namespace cleave {
+namespace {
+
+constexpr SolverEntry kBaselines[] = {
+    {"ode-step", "ODE's dWorldStep on the same problem, up to --ode-step-max-rows rows",
+     "Baraff 1994; ODE manual"},
+    {"ode-quickstep", "ODE's dWorldQuickStep on the same problem, --quickstep-iterations iterations",
+     "ODE manual"},
+};
+
+constexpr unsigned long kQuickStepSeed = 1;
+
+// The rows [begin, end) of one constraint.
+struct RowRange {
+  int begin = 0, end = 0;
+  int count() const { return end - begin; }
+};
+
+// By constraint id: joints first, then contacts. Constraints without rows have an empty range.
+std::vector<RowRange> rows_by_constraint(const StepProblem& problem, std::size_t constraints) {
+  std::vector<RowRange> ranges(constraints);
+  for (int r = 0; r < problem.row_count(); ++r) {
+    RowRange& range = ranges.at(problem.row_constraint[r]);
+    if (range.count() == 0) range.begin = r;
+    assert(range.begin == r || range.end == r);
+    range.end = r + 1;
+  }
+  return ranges;
+}
+
+// The world of one step with every joint's feedback switched on.
+class FeedbackWorld {
+ public:
+  FeedbackWorld(const OdeWorld& world, std::span<const ContactPoint> contacts, double erp, double cfm)
+      : copy_(world.rebuilt(erp, cfm)),
+        contacts_(contacts),
+        joints_(copy_->content().joints),
+        feedback_(joints_.size() + contacts.size()) {
+    for (std::size_t j = 0; j < joints_.size(); ++j) dJointSetFeedback(joints_[j], &feedback_[j]);
+  }
+
+  void add_contacts(const StepProblem& problem, std::span<const RowRange> rows) {
+    for (std::size_t k = 0; k < contacts_.size(); ++k) {
+      const std::size_t constraint = joints_.size() + k;
+      add_contact(contacts_[k], force_limits(problem, rows[constraint]), &feedback_[constraint]);
+    }
+  }
+
+  // The impulses whose J^T is h times what ODE says the joint exerts.
+  void read_impulses(const StepProblem& problem, std::span<const RowRange> rows,
+                     std::span<double> impulse) const {
+    for (std::size_t c = 0; c < rows.size(); ++c)
+      if (rows[c].count() > 0) read_constraint(problem, rows[c], feedback_[c], impulse);
+  }
+
+  void read_velocities(std::span<double> velocity) const {
+    for (int i = 0; i < copy_->body_count(); ++i)
+      std::ranges::copy(copy_->state(i).velocity, velocity.begin() + 6 * i);
+  }
+
+  OdeWorld& world() { return *copy_; }
+
+ private:
+  // Largest friction forces along t1 and t2, N; zero where there are no friction rows.
+  static std::array<double, 2> force_limits(const StepProblem& problem, const RowRange& rows) {
+    std::array<double, 2> limits{};
+    for (int r = rows.begin; r < rows.end; ++r)
+      if (problem.row_kind[r] == RowKind::friction) {
+        assert(problem.lower[r] == -problem.upper[r]);
+        limits.at(r - rows.begin - 1) = problem.upper[r] / problem.h_s;
+      }
+    return limits;
+  }
+
+  void add_contact(const ContactPoint& point, const std::array<double, 2>& limits, dJointFeedback* feedback) {
+    dContact contact{};
+    contact.surface.mode = dContactMu2;
+    contact.surface.mu = limits[0];
+    contact.surface.mu2 = limits[1];
+    std::ranges::copy(point.position_m, contact.geom.pos);
+    std::ranges::copy(point.normal, contact.geom.normal);
+    contact.geom.depth = point.depth_m;
+    const auto& bodies = copy_->content().bodies;
+    const dJointID joint = dJointCreateContact(copy_->world(), nullptr, &contact);
+    dJointAttach(joint, bodies[point.body_a], point.body_b < 0 ? nullptr : bodies[point.body_b]);
+    dJointSetFeedback(joint, feedback);
+  }
+
+  static void read_constraint(const StepProblem& problem, const RowRange& rows,
+                              const dJointFeedback& feedback, std::span<double> impulse) {
+    Eigen::Matrix<double, 12, 1> exerted;
+    exerted << Eigen::Map<const Eigen::Vector3d>(feedback.f1), Eigen::Map<const Eigen::Vector3d>(feedback.t1),
+        Eigen::Map<const Eigen::Vector3d>(feedback.f2), Eigen::Map<const Eigen::Vector3d>(feedback.t2);
+    if (problem.row_body[2 * rows.begin + 1] < 0) exerted.tail<6>().setZero();
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 12, Eigen::RowMajor>;
+    const Eigen::Map<const Rows> jacobian(&problem.jacobian[12 * rows.begin], rows.count(), 12);
+    const Eigen::VectorXd force = jacobian.transpose().colPivHouseholderQr().solve(exerted);
+    for (int k = 0; k < rows.count(); ++k) impulse[rows.begin + k] = problem.h_s * force[k];
+  }
+
+  std::unique_ptr<OdeWorld> copy_;
+  std::span<const ContactPoint> contacts_;
+  const std::vector<dJointID>& joints_;
+  std::vector<dJointFeedback> feedback_;  // joints, then contacts
+};
+
+class OdeSolver : public OdeBaseline {
+ public:
+  OdeSolver(bool quick, const OdeBaselineOptions& options) : quick_(quick), options_(options) {}
+
+ private:
+  SolveSummary do_solve(const StepProblem& problem, std::span<const int>, Solution& solution) override {
+    SolveSummary summary;
+    summary.strategy = quick_ ? "ode-quickstep" : "ode-step";
+    summary.kernel = "-";
+    messages_ = 0;
+    if (world_ == nullptr) {
+      summary.status = SolveStatus::refused;
+      summary.message = "no world to rebuild: a problem alone does not hold one";
+    } else if (!quick_ && problem.row_count() > options_.step_max_rows) {
+      summary.status = SolveStatus::refused;
+      summary.message = std::to_string(problem.row_count()) + " rows, more than --ode-step-max-rows " +
+                        std::to_string(options_.step_max_rows);
+    } else {
+      step(problem, solution, summary);
+    }
+    return summary;
+  }
+
+  void step(const StepProblem& problem, Solution& solution, SolveSummary& summary) {
+    FeedbackWorld feedback(*world_, contacts_, erp_, cfm_);
+    const std::vector<RowRange> rows =
+        rows_by_constraint(problem, world_->content().joints.size() + contacts_.size());
+    feedback.add_contacts(problem, rows);
+    if (quick_) {
+      dWorldSetQuickStepNumIterations(feedback.world().world(), options_.quickstep_iterations);
+      dRandSetSeed(kQuickStepSeed);
+      summary.iterations = options_.quickstep_iterations;
+    }
+    std::string text;
+    clock_.start();
+    try {
+      (quick_ ? dWorldQuickStep : dWorldStep)(feedback.world().world(), problem.h_s);
+    } catch (const std::runtime_error& error) {
+      summary.status = SolveStatus::crashed;
+      text = error.what();
+    }
+    summary.times = clock_.stop();
+    std::string first_message;
+    messages_ = feedback.world().take_message_count(&first_message);
+    summary.message = text.empty() ? first_message : text;
+    if (summary.status == SolveStatus::crashed) return;
+    feedback.read_impulses(problem, rows, solution.impulse);
+    feedback.read_velocities(solution.velocity);
+  }
+
+  bool quick_;
+  OdeBaselineOptions options_;
+  StageClock clock_;
+};
+
+}  // namespace
+
+std::span<const SolverEntry> ode_baselines() { return kBaselines; }
+
+std::unique_ptr<OdeBaseline> make_ode_baseline(std::string_view name, const OdeBaselineOptions& options) {
+  for (const SolverEntry& entry : kBaselines)
+    if (entry.name == name) return std::make_unique<OdeSolver>(name == "ode-quickstep", options);
+  return nullptr;
+}
+
+}  // namespace cleave

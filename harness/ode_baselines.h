@@ -1,0 +1,67 @@
+// ODE's own solvers as baselines: `ode-step` (dWorldStep) and `ode-quickstep` (dWorldQuickStep).
+//
+// They are ordinary solvers of --solver, but a StepProblem alone does not make an ODE world: they also need
+// the world and the contacts that the problem was extracted from. For every solve the world is rebuilt with
+// the step's ERP and CFM, each contact becomes a contact joint whose friction bounds are the problem's, as
+// constant force limits (dContactMu2 without dContactApprox1: mu = hi_t1 / h, mu2 = hi_t2 / h), and ODE
+// solves
+//
+//     (J M^-1 J^T + C) lambda_f = (b - J v0) / h,   lambda_f = lambda / h within its bounds:
+//
+// the very same MLCP, row by row. The forces f that joint feedback returns are turned back into impulses, the
+// lambda with J_c^T lambda = h f over the rows of each constraint c. What ODE makes of it is judged as any
+// other solver's result. t_s is the time of dWorldStep or dWorldQuickStep, which contains ODE's own rows and
+// its integration, not the rebuilding.
+//
+// dWorldStep solves exactly (Dantzig's method as in Baraff, SIGGRAPH 1994) unless it meets a pivot <= 0: then
+// it gives the message "LCP internal error, s <= 0" and leaves the unknowns that are left at zero. Its time
+// grows with the fourth to fifth power of the rows. dWorldQuickStep is projected Gauss-Seidel with
+// over-relaxation and random row order, a fixed number of iterations from zero; the warm start is not used.
+// ODE's random generator is seeded before each.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "harness/ode_world.h"
+#include "solver/registry.h"
+#include "solver/step_solver.h"
+
+namespace cleave {
+
+struct OdeBaselineOptions {
+  int quickstep_iterations = 20;  // >= 1
+  int step_max_rows = 500;        // >= 0; ode-step refuses more
+};
+
+class OdeBaseline : public StepSolver {
+ public:
+  // What the next problems are extracted from; both must outlive the solves. The problem's friction bounds
+  // may change from solve to solve, nothing else. Without it a problem is refused.
+  void see(const OdeWorld& world, std::span<const ContactPoint> contacts, double erp, double cfm) {
+    world_ = &world;
+    contacts_ = contacts;
+    erp_ = erp;
+    cfm_ = cfm;
+  }
+
+  // Messages ODE gave during the last solve.
+  int messages() const { return messages_; }
+
+  bool uses_partition() const final { return false; }
+
+ protected:
+  const OdeWorld* world_ = nullptr;
+  std::span<const ContactPoint> contacts_;
+  double erp_ = 0, cfm_ = 0;
+  int messages_ = 0;
+};
+
+std::span<const SolverEntry> ode_baselines();
+
+// nullptr for a name that is none of ode_baselines().
+std::unique_ptr<OdeBaseline> make_ode_baseline(std::string_view name, const OdeBaselineOptions& options);
+
+}  // namespace cleave

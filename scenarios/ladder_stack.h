@@ -1,0 +1,23 @@
+// Boxes on top of each other on a plane, level or inclined, whose masses make the step hard to solve.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scenarios/scene.h"
+
+namespace cleave {
+
+std::vector<SceneParameter> ladder_stack_parameters();  // --boxes, --copies
+std::unique_ptr<Scene> make_ladder_stack();
+
+std::vector<SceneParameter> ladder_heavy_top_parameters();  // --boxes, --mass-ratio
+std::unique_ptr<Scene> make_ladder_heavy_top();
+
+std::vector<SceneParameter> ladder_alternating_parameters();  // --boxes, --mass-ratio
+std::unique_ptr<Scene> make_ladder_alternating();
+
+std::vector<SceneParameter> ladder_incline_parameters();  // --boxes, --angle
+std::unique_ptr<Scene> make_ladder_incline();
+
+}  // namespace cleave

@@ -1,0 +1,227 @@
+"""scripts/ladder with a stand-in for the program, and its closed forms."""
+import csv
+import os
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+from synthetic import ROOT, SCRIPTS, run_script
+
+import ladder_rungs
+from ladder_cells import COLUMNS
+
+# Fails as STAND_IN says of a solver: "pgs=crash ode-step=sleep".
+STAND_IN = f"""#!/usr/bin/python3
+import os, pathlib, signal, sys, time
+sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+from synthetic import write_manifest, write_steps
+given = dict(zip(sys.argv[2::2], sys.argv[3::2]))
+with open(os.environ["STAND_IN_LOG"], "a") as log:
+    log.write(" ".join(sys.argv[1:]) + "\\n")
+told = dict(word.split("=") for word in os.environ["STAND_IN"].split()).get(given["--solver"], "ok")
+out, h = pathlib.Path(given["--out"]), float(given["--dt"])
+out.mkdir()
+if told == "signal":
+    os.kill(os.getpid(), signal.SIGSEGV)
+if told == "sleep":
+    time.sleep(60)
+if told == "bad":
+    sys.exit("cleave run: --mu: no")
+if told == "interrupt":
+    sys.exit(130)
+def row(step):
+    fallen = -9.81 * h * h * (step + 1) * (step + 2) / 2
+    status = {{"late": "not_converged" if step == 1 else "ok",
+               "refused": "refused" if step == 0 else "skipped"}}.get(told, "ok")
+    return {{"step": step, "status": status, "status_reason": "too many rows" if step == 0 else "-",
+             "residual_m_per_s": 1e-12 * step, "iterations": step, "joint_drift_m": 0, "max_penetration_m": 0,
+             "energy_excess_j": 0, "kinetic_energy_j": 1, "last_body_z_m": fallen + (1 if told == "high" else 0),
+             "t_s_ms": step, "rows": 0, "ode_messages": 1}}
+write_steps(out, [row(step) for step in range(int(given["--steps"]))])
+write_manifest(out, state="failed" if told == "thrown" else "complete",
+               result={{"inexact_advances": int(told == "inexact")}})
+if told == "thrown":
+    sys.exit("cleave run: ODE: assertion")
+sys.exit(0 if told == "ok" else 2)
+"""
+
+
+class LadderTest(unittest.TestCase):
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.directory = pathlib.Path(scratch.name)
+        self.out = self.directory / "out"
+        self.log = self.directory / "log"
+        self.log.touch()
+        self.program = self.directory / "cleave"
+        self.program.write_text(STAND_IN)
+        self.program.chmod(0o755)
+
+    def environment(self, told):
+        return dict(os.environ, CLEAVE_PROGRAM=str(self.program), STAND_IN_LOG=str(self.log), STAND_IN=told)
+
+    def ladder(self, *arguments, told="", code=0):
+        result = run_script("ladder",
+                            "--out",
+                            self.out,
+                            "--rung",
+                            "no_contact",
+                            "--steps",
+                            4,
+                            *arguments,
+                            env=self.environment(told))
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def rows(self):
+        with open(self.out / "ladder.csv", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def calls(self):
+        lines = self.log.read_text().splitlines()
+        self.log.write_text("")
+        return lines
+
+    def test_every_solver_advances_a_world_of_its_own(self):
+        self.ladder()
+        rows, calls = self.rows(), self.calls()
+        self.assertEqual(len(rows), 2 * len(ladder_rungs.SOLVERS))
+        self.assertEqual(tuple(rows[0]), COLUMNS)
+        self.assertEqual({(row["status"], row["physics"], row["first_failing"])
+                          for row in rows}, {("ok", "ok", "-")})
+        for call in calls:
+            words = call.split()
+            self.assertEqual(words[words.index("--solver") + 1], words[words.index("--advance") + 1])
+        self.assertEqual(len(set(calls)), len(rows))
+
+    def test_a_row_holds_the_worst_of_its_steps(self):
+        self.ladder("--solver", "exact", told="exact=late")
+        row = self.rows()[0]
+        self.assertEqual((row["rung"], row["parameter"], row["value"], row["solver"], row["status"]),
+                         ("no_contact", "boxes", "1", "exact", "not_converged"))
+        self.assertEqual((row["residual_m_per_s"], row["iterations"], row["t_s_ms"], row["ode_messages"]),
+                         ("3e-12", "3.0", "1.5", "4"))
+        self.assertLess(float(row["height_error_m"]), 1e-15)
+
+    def test_a_failure_is_a_row_with_its_status_and_reason(self):
+        told = "exact=signal monolithic=sleep pgs=thrown ode-step=refused ode-quickstep=high"
+        solvers = "exact,monolithic,pgs_20,ode-step,ode-quickstep_20"
+        self.ladder("--solver", solvers, "--timeout", 3, told=told)
+        found = {row["solver"]: row for row in self.rows() if row["value"] == "10"}
+        self.assertEqual({solver: (row["status"], row["physics"])
+                          for solver, row in found.items()}, {
+                              "exact": ("crashed", "-"),
+                              "monolithic": ("timeout", "-"),
+                              "pgs_20": ("crashed", "-"),
+                              "ode-step": ("refused", "-"),
+                              "ode-quickstep_20": ("ok", "height")
+                          })
+        self.assertEqual(found["exact"]["status_reason"], "ended by signal 11")
+        self.assertEqual(found["pgs_20"]["status_reason"], "cleave run: ODE: assertion")
+        self.assertEqual(found["ode-step"]["status_reason"], "too many rows")
+        self.assertEqual(found["ode-step"]["residual_m_per_s"], "nan")
+        self.assertEqual([row["first_failing"] for row in self.rows()], ["1", "1", "1", "1", "-"] * 2)
+        self.assertEqual(found["ode-quickstep_20"]["first_failing_physics"], "1")
+
+    def test_an_inexact_advance_between_exact_rows_counts(self):
+        self.ladder("--solver", "exact", told="exact=inexact")
+        self.assertEqual(self.rows()[0]["status"], "not_converged")
+
+    def test_finished_cells_are_kept_and_a_longer_limit_tries_again(self):
+        self.ladder("--solver", "exact,pgs_20", "--timeout", 3, told="pgs=sleep")
+        first = (self.out / "ladder.csv").read_text()
+        self.assertEqual(len(self.calls()), 4)
+        self.assertIn("4 cells kept",
+                      self.ladder("--solver", "exact,pgs_20", "--timeout", 3, told="pgs=sleep").stderr)
+        self.assertEqual(self.calls(), [])
+        self.assertEqual((self.out / "ladder.csv").read_text(), first)
+        self.ladder("--solver", "exact,pgs_20", "--timeout", 20)
+        self.assertEqual(len(self.calls()), 2)
+        self.assertEqual([row["status"] for row in self.rows()], ["ok"] * 4)
+        self.program.touch()
+        self.ladder("--solver", "exact")
+        self.assertEqual(len(self.calls()), 2)
+
+    def test_an_interrupted_ladder_leaves_no_table_and_goes_on(self):
+        result = self.ladder("--solver", "exact,pgs_20", "--jobs", 1, told="pgs=interrupt", code=130)
+        self.assertIn("goes on", result.stderr)
+        self.assertFalse((self.out / "ladder.csv").exists())
+        self.calls()
+        self.ladder("--solver", "exact,pgs_20")
+        self.assertEqual(len(self.calls()), 3)
+        self.assertEqual(sorted(path.name for path in self.out.iterdir()),
+                         ["ladder.csv", "ladder_cells.jsonl"])
+
+    def test_a_signal_ends_the_programs_that_run(self):
+        process = subprocess.Popen(
+            [SCRIPTS / "ladder", "--out", self.out, "--rung", "no_contact", "--solver", "exact"],
+            env=self.environment("exact=sleep"),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL)
+        deadline_s = time.monotonic() + 30
+        while len(self.log.read_text().splitlines()) < 2 and time.monotonic() < deadline_s:
+            time.sleep(0.05)
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=10), 130)
+
+    def test_bad_input_is_one_line_and_leaves_nothing(self):
+        for arguments in (("--rung", "heavy"), ("--solver", "pgs"), ("--steps", "0"), ("--timeout", "nan"),
+                          ("--jobs", "x")):
+            result = self.ladder(*arguments, code=1)
+            self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+            self.assertIn(arguments[0], result.stderr)
+        self.assertFalse(self.out.exists())
+        self.assertIn("--mu: no", self.ladder("--solver", "exact", told="exact=bad", code=1).stderr)
+
+
+class ClosedFormTest(unittest.TestCase):
+
+    def expected(self, name, value, steps=10**6, **changes):
+        rung = next(rung for rung in ladder_rungs.RUNGS if rung.name == name)
+        return rung.expect({**rung.settings(value), **changes}, steps)
+
+    def test_the_heavy_box_sags_by_the_sum_over_the_interfaces(self):
+        sag = sum(1e-10 * 9.81 * (1e6 + light) / 60 / (0.2 * 4) for light in range(6))
+        aim = self.expected("heavy_top", "1e6")
+        self.assertAlmostEqual(aim.sag_m, sag, delta=1e-18)
+        self.assertAlmostEqual(aim.height_m, 5.5 - sag, delta=1e-15)
+        self.assertLess(sag, 1e-3)
+
+    def test_the_sag_grows_step_by_step_and_without_end_where_erp_is_zero(self):
+        settings = {"erp": "0.2", "cfm": "1e-5", "dt": "0.01"}
+        depth = 0
+        for steps in range(1, 30):
+            depth += 1e-5 * 50 * 0.01 / 4 - 0.2 * depth
+            self.assertAlmostEqual(ladder_rungs.depth_m(50, 4, settings, steps), depth, delta=1e-18)
+        self.assertAlmostEqual(ladder_rungs.depth_m(50, 4, {**settings, "erp": "0"}, 7), 7 * 1.25e-6)
+
+    def test_duplicates_share_the_load(self):
+        once, twice = (self.expected("duplicates", copies) for copies in "12")
+        weight = 1e-5 * 9.81 / 60 / (0.2 * 4)
+        self.assertAlmostEqual(once.sag_m, 15 * weight)
+        self.assertAlmostEqual(twice.sag_m, (5 / 2 + 10 / 4) * weight)
+
+    def test_a_box_holds_or_slides(self):
+        self.assertAlmostEqual(self.expected("friction", "0.5", cfm="0").height_m, 0.4829629, places=6)
+        slow = self.expected("friction", "0", steps=60, cfm="0").height_m
+        self.assertAlmostEqual(slow, 0.4829629 - 9.81 * 0.0669873 * 61 * 60 / 3600 / 2, places=5)
+
+    def test_a_chain_is_open_widest_at_its_top(self):
+        aim = self.expected("chain_bob", "1e6")
+        self.assertAlmostEqual(aim.joint_gap_m, 1e-10 * 9.81 * (1e6 + 9) / 60 / 0.2)
+        self.assertAlmostEqual(aim.height_m, 1.15 - aim.sag_m)
+
+    def test_quick_values_are_some_of_the_full_ones_in_their_order(self):
+        for rung in ladder_rungs.RUNGS:
+            self.assertEqual([value for value in rung.values if value in rung.quick], list(rung.quick),
+                             rung.name)
+            self.assertEqual(len(set(rung.values)), len(rung.values), rung.name)
+
+
+if __name__ == "__main__":
+    unittest.main()
