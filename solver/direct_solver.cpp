@@ -20,6 +20,22 @@ constexpr double kProximalDeltas[] = {0, 1e-9, 1e-11};  // tried in this order; 
 constexpr int kMostProximalSteps = 50;
 constexpr int kStalledProximalSteps = 8;  // without the residual falling by a tenth, before giving up
 
+// The impulses of the least residual among those offered.
+struct Best {
+  double residual = std::numeric_limits<double>::infinity();
+  std::vector<double> impulse;
+
+  void clear() { residual = std::numeric_limits<double>::infinity(); }
+  void offer(const SolveState& state) {
+    const double offered = state.residual();
+    if (offered < residual) residual = offered, impulse = state.impulse;
+  }
+  void restore(SolveState& state) const {
+    if (std::isfinite(residual)) state.impulse = impulse;
+    state.update_velocity();
+  }
+};
+
 struct Link {
   std::string_view name;
   std::unique_ptr<Strategy> strategy;
@@ -47,7 +63,6 @@ class DirectSolver : public StepSolver {
   bool same_structure(const StepProblem& problem, std::span<const int> part_of_body) const;
   bool run_chain(SolveSummary& summary, std::span<const double> warm_impulse);
   bool run_proximal(SolveSummary& summary);
-  void keep_best();
   Strategy& strategy(std::string_view name);
 
   std::string strategy_, kernel_name_;
@@ -60,8 +75,7 @@ class DirectSolver : public StepSolver {
   std::vector<Link> links_;  // strategies made so far
   std::vector<int> analyzed_body_, analyzed_part_;
   ProximalStep proximal_;
-  double best_residual_ = 0;  // of the strategies that failed in this solve
-  std::vector<double> best_impulse_, proximal_best_, attempted_best_;
+  Best chain_best_, proximal_best_, attempt_best_;
 };
 
 Strategy& DirectSolver::strategy(std::string_view name) {
@@ -91,21 +105,12 @@ void DirectSolver::analyze(const StepProblem& problem, std::span<const int> part
   kernel_->analyze(step_, part_of_body, state_.tasks);
 }
 
-// A strategy that failed may still have the best answer there is.
-void DirectSolver::keep_best() {
-  state_.update_velocity();
-  const double residual = state_.residual();
-  if (!(residual < best_residual_)) return;
-  best_residual_ = residual;
-  best_impulse_ = state_.impulse;
-}
-
 // Runs the strategies one after the other until one succeeds; each hand-over is counted. When all fail, the
 // impulses of the least residual stay.
 bool DirectSolver::run_chain(SolveSummary& summary, std::span<const double> warm_impulse) {
   const StrategyChoice choice = choose_strategies(strategy_, step_);
   summary.auto_reason = choice.reason;
-  best_residual_ = std::numeric_limits<double>::infinity();
+  chain_best_.clear();
   for (int k = 0; k < choice.count; ++k) {
     if (k > 0) {
       ++summary.fallbacks;
@@ -113,10 +118,10 @@ bool DirectSolver::run_chain(SolveSummary& summary, std::span<const double> warm
     }
     summary.strategy = choice.names[k];
     if (strategy(choice.names[k]).run(state_)) return true;
-    keep_best();
+    state_.update_velocity();
+    chain_best_.offer(state_);
   }
-  if (std::isfinite(best_residual_)) state_.impulse = best_impulse_;
-  state_.update_velocity();
+  chain_best_.restore(state_);
   return false;
 }
 
@@ -125,23 +130,23 @@ bool DirectSolver::run_chain(SolveSummary& summary, std::span<const double> warm
 // factor at hand.
 bool DirectSolver::run_proximal(SolveSummary& summary) {
   const double target = state_.options.target_m_per_s * step_.velocity_scale();
-  double least = std::numeric_limits<double>::infinity();
+  proximal_best_.clear();
   if (!state_.factor_free()) return false;
   for (int k = 0, stalled = 0; k < kMostProximalSteps && stalled < kStalledProximalSteps; ++k) {
     proximal_.recentre(state_.impulse);
     state_.update_velocity();
     const double residual = state_.residual();
     if (residual <= target) return true;
-    stalled = residual < 0.9 * least ? 0 : stalled + 1;
-    if (residual < least) least = residual, proximal_best_ = state_.impulse;
+    stalled = residual < 0.9 * proximal_best_.residual ? 0 : stalled + 1;
+    proximal_best_.offer(state_);
     ++summary.refinements;
     state_.refine_free(0.1 * target, 3, false);
     if (state_.find_violations(0.1 * target) == 0 || state_.settle(0.1 * target)) continue;
-    state_.begin(step_, *kernel_, summary, proximal_best_);
-    if (!run_chain(summary, proximal_best_)) break;
+    state_.begin(step_, *kernel_, summary, proximal_best_.impulse);
+    if (!run_chain(summary, proximal_best_.impulse)) break;
   }
-  if (std::isfinite(least)) state_.impulse = proximal_best_;
-  return least <= exact_limit_m_per_s(step_);
+  proximal_best_.restore(state_);
+  return proximal_best_.residual <= exact_limit_m_per_s(step_);
 }
 
 // One run of the strategies, on the problem itself (delta 0) or by proximal steps. The impulses that stay are
@@ -162,18 +167,18 @@ bool DirectSolver::attempt(SolveSummary& summary, double delta, std::span<const 
 // so small that rounding kept the first attempt above the limit.
 bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& problem,
                                 std::span<const double> warm_impulse) {
-  const double softest = least_relative_compliance(step_);
-  double least = std::numeric_limits<double>::infinity();
+  const double stiffest = least_relative_compliance(step_);
+  attempt_best_.clear();
+  int attempts = 0;
   for (double delta : kProximalDeltas) {
-    if (delta == 0 ? softest < kLeastCompliance : softest >= delta) continue;
-    if (std::isfinite(least)) ++summary.fallbacks;
+    if (delta == 0 ? stiffest < kLeastCompliance : stiffest >= delta) continue;
+    if (attempts++ > 0) ++summary.fallbacks;
     if (attempt(summary, delta, warm_impulse)) return true;
-    step_.prepare(problem);
+    if (delta > 0) step_.prepare(problem);
     state_.update_velocity();
-    const double residual = state_.residual();
-    if (residual < least) least = residual, attempted_best_ = state_.impulse;
+    attempt_best_.offer(state_);
   }
-  if (std::isfinite(least)) state_.impulse = attempted_best_;
+  attempt_best_.restore(state_);
   return false;
 }
 

@@ -74,7 +74,7 @@ void InteriorPoint::choose_start(SolveState& state, int r, double speed) {
   row.has_lower = std::isfinite(problem.lower[r]);
   row.has_upper = std::isfinite(problem.upper[r]);
   // The impulse itself moves inside, so that slacks start feasible even where the bounds are close together.
-  const double margin = std::min(speed / d, 0.25 * (problem.upper[r] - problem.lower[r]));
+  const double margin = std::min(speed / d, 0.25 * width);
   if (row.has_lower) state.impulse[r] = std::max(state.impulse[r], problem.lower[r] + margin);
   if (row.has_upper) state.impulse[r] = std::min(state.impulse[r], problem.upper[r] - margin);
   if (row.has_lower) {
