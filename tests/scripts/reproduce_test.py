@@ -1,11 +1,9 @@
 """scripts/reproduce with a stand-in for the program that writes made-up results."""
 import json
-import os
-import pathlib
-import tempfile
 import unittest
 
-from synthetic import ROOT, run_script
+from stand_in import StandInCase
+from synthetic import ROOT
 
 STAND_IN = f"""#!/usr/bin/python3
 import os, pathlib, sys
@@ -28,34 +26,11 @@ sys.exit(code)
 """
 
 
-class ReproduceTest(unittest.TestCase):
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.directory = pathlib.Path(scratch.name)
-        self.log = self.directory / "log"
-        self.log.touch()
-        self.program = self.directory / "cleave"
-        self.program.write_text(STAND_IN)
-        self.program.chmod(0o755)
-
-    def reproduce(self, *arguments, code=0, stand_in_code=0):
-        environment = dict(os.environ,
-                           CLEAVE_PROGRAM=str(self.program),
-                           STAND_IN_LOG=str(self.log),
-                           STAND_IN_CODE=str(stand_in_code))
-        result = run_script("reproduce", "--out", self.directory / "out", *arguments, env=environment)
-        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
-        return result
-
-    def calls(self):
-        lines = self.log.read_text().splitlines()
-        self.log.write_text("")
-        return lines
+class ReproduceTest(StandInCase):
+    script, stand_in = "reproduce", STAND_IN
 
     def test_quick_matrix_runs_every_scene_and_prints_the_table_and_the_check(self):
-        result = self.reproduce()
+        result = self.run_it()
         calls = self.calls()
         self.assertEqual(
             calls[1], "run --scene log_tower --partitioner all --refiner all --solver schur --steps 500 "
@@ -68,31 +43,31 @@ class ReproduceTest(unittest.TestCase):
         self.assertNotIn("FAIL", result.stdout)
 
     def test_options_are_passed_on(self):
-        self.reproduce("--scene", "log_tower,chain_drop", "--steps", 25, "--repeats", 1, "--threads", 4,
+        self.run_it("--scene", "log_tower,chain_drop", "--steps", 25, "--repeats", 1, "--threads", 4,
                        "--seed", 0)
         calls = self.calls()
         self.assertEqual([call.split()[2] for call in calls], ["log_tower", "chain_drop"])
         self.assertIn("--steps 25 --measure-every 2 --repeats 1 --threads 4 --seed 0", calls[0])
-        self.reproduce("--scene", "rock_pile", "--full", "--steps", 20)
+        self.run_it("--scene", "rock_pile", "--full", "--steps", 20)
         self.assertIn("--steps 20 --measure-every 1 ", self.calls()[0])
 
     def test_fewer_steps_than_ten_are_checked_as_such(self):
-        self.assertIn("enough measured steps", self.reproduce("--scene", "rock_pile", "--steps", 4).stdout)
-        self.reproduce("--scene", "log_tower", "--steps", 4, "--measure-every", 5, code=1)
+        self.assertIn("enough measured steps", self.run_it("--scene", "rock_pile", "--steps", 4).stdout)
+        self.run_it("--scene", "log_tower", "--steps", 4, "--measure-every", 5, code=1)
 
     def test_a_complete_scene_is_kept_until_forced(self):
         arguments = ("--scene", "rock_pile")
-        self.reproduce(*arguments)
+        self.run_it(*arguments)
         self.calls()
-        result = self.reproduce(*arguments)
+        result = self.run_it(*arguments)
         self.assertEqual(self.calls(), [])
         self.assertIn("rock_pile is kept: 150 of 150 rows ok", result.stderr)
         self.assertIn("Rock Pile: 10 measured steps", result.stdout)
-        self.reproduce(*arguments, "--force")
+        self.run_it(*arguments, "--force")
         self.assertEqual(len(self.calls()), 1)
 
     def test_an_incomplete_scene_is_run_again(self):
-        self.reproduce("--scene", "rock_pile")
+        self.run_it("--scene", "rock_pile")
         path = self.directory / "out" / "rock_pile" / "manifest.json"
         complete = path.read_text()
         for damage in (lambda: path.write_text(json.dumps(dict(json.loads(complete), state="running"))),
@@ -100,21 +75,21 @@ class ReproduceTest(unittest.TestCase):
                        (path.parent / "steps.csv").unlink):
             self.calls()
             damage()
-            self.reproduce("--scene", "rock_pile")
+            self.run_it("--scene", "rock_pile")
             self.assertEqual(len(self.calls()), 1)
 
     def test_complete_results_of_other_options_are_not_overwritten(self):
-        self.reproduce("--scene", "rock_pile")
+        self.run_it("--scene", "rock_pile")
         self.calls()
-        result = self.reproduce("--scene", "rock_pile", "--steps", 20, code=1)
+        result = self.run_it("--scene", "rock_pile", "--steps", 20, code=1)
         self.assertEqual(self.calls(), [])
         self.assertIn("--steps 500", result.stderr)
         self.assertIn("--force", result.stderr)
-        self.reproduce("--scene", "rock_pile", "--steps", 20, "--force")
+        self.run_it("--scene", "rock_pile", "--steps", 20, "--force")
 
     def test_failed_cells_end_with_two_and_are_counted_also_when_kept(self):
         for _ in range(2):
-            result = self.reproduce("--scene", "rock_pile", code=2, stand_in_code=2)
+            result = self.run_it("--scene", "rock_pile", code=2, stand_in_code=2)
             self.assertIn("1 failed row (status not ok)", result.stdout)
             self.assertIn("FAIL  every row has status ok", result.stdout)
         self.assertEqual(len(self.calls()), 1)
@@ -122,7 +97,7 @@ class ReproduceTest(unittest.TestCase):
     def test_other_failures_stop_at_once(self):
         for stand_in_code, code, words in ((1, 1, "exit code 1 on chain_drop"), (130, 130, "interrupted"),
                                            (139, 1, "exit code 139 on chain_drop")):
-            result = self.reproduce(code=code, stand_in_code=stand_in_code)
+            result = self.run_it(code=code, stand_in_code=stand_in_code)
             self.assertIn(words, result.stderr)
             self.assertEqual((len(self.calls()), result.stdout), (1, ""))
 
@@ -135,7 +110,7 @@ class ReproduceTest(unittest.TestCase):
                                    ""], "--scene needs a value"), (["--steps"], "--steps needs a value"),
                                  (["--fast"], "unknown option '--fast'"), (["rock_pile"], "'rock_pile'")):
             with self.subTest(arguments):
-                result = self.reproduce(*arguments, code=1)
+                result = self.run_it(*arguments, code=1)
                 self.assertIn(words, result.stderr)
                 self.assertEqual(len(result.stderr.splitlines()), 1)
         self.assertEqual(self.calls(), [])
@@ -143,7 +118,7 @@ class ReproduceTest(unittest.TestCase):
 
     def test_a_program_that_cannot_be_run(self):
         self.program.chmod(0o644)
-        self.assertIn("CLEAVE_PROGRAM", self.reproduce(code=1).stderr)
+        self.assertIn("CLEAVE_PROGRAM", self.run_it(code=1).stderr)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,8 @@
 """scripts/scaling with a stand-in for the program, and Figure 4 from what it leaves."""
-import os
-import pathlib
-import tempfile
 import unittest
 
-from synthetic import ROOT, run_script
+from stand_in import StandInCase
+from synthetic import ROOT
 
 from figures import data, times_by_size
 
@@ -30,34 +28,11 @@ sys.exit(code)
 """
 
 
-class ScalingTest(unittest.TestCase):
-
-    def setUp(self):
-        scratch = tempfile.TemporaryDirectory()
-        self.addCleanup(scratch.cleanup)
-        self.directory = pathlib.Path(scratch.name)
-        self.log = self.directory / "log"
-        self.log.touch()
-        self.program = self.directory / "cleave"
-        self.program.write_text(STAND_IN)
-        self.program.chmod(0o755)
-
-    def scaling(self, *arguments, code=0, stand_in_code=0):
-        environment = dict(os.environ,
-                           CLEAVE_PROGRAM=str(self.program),
-                           STAND_IN_LOG=str(self.log),
-                           STAND_IN_CODE=str(stand_in_code))
-        result = run_script("scaling", "--out", self.directory / "out", *arguments, env=environment)
-        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
-        return result
-
-    def calls(self):
-        lines = self.log.read_text().splitlines()
-        self.log.write_text("")
-        return lines
+class ScalingTest(StandInCase):
+    script, stand_in = "scaling", STAND_IN
 
     def test_every_size_is_run_once_and_figure_4_finds_the_exponent(self):
-        self.scaling("--sizes", "50,100,400", "--steps", 20)
+        self.run_it("--sizes", "50,100,400", "--steps", 20)
         calls = self.calls()
         self.assertEqual(
             calls[1],
@@ -69,20 +44,20 @@ class ScalingTest(unittest.TestCase):
         self.assertEqual(list(groups), [50, 100, 400])
         means = [part.rows["t_s_ms"].mean() for (part,) in groups.values()]
         self.assertAlmostEqual(times_by_size.fit_power(list(groups), means).exponent, 1.5, 9)
-        result = self.scaling("--sizes", "50,100,400", "--steps", 20)
+        result = self.run_it("--sizes", "50,100,400", "--steps", 20)
         self.assertEqual(self.calls(), [])
         self.assertEqual(result.stderr.count("is kept: "), 3)
-        self.scaling("--sizes", "50", "--steps", 20, "--force")
+        self.run_it("--sizes", "50", "--steps", 20, "--force")
         self.assertEqual(len(self.calls()), 1)
 
     def test_results_of_other_options_are_not_overwritten(self):
-        self.scaling("--sizes", "50", "--steps", 20)
-        self.assertIn("--force", self.scaling("--sizes", "50", "--steps", 40, code=1).stderr)
+        self.run_it("--sizes", "50", "--steps", 20)
+        self.assertIn("--force", self.run_it("--sizes", "50", "--steps", 40, code=1).stderr)
 
     def test_what_the_program_ends_with_is_passed_on(self):
         for stand_in_code, code, words, calls in ((2, 2, "", 2), (130, 130, "interrupted", 1),
                                                   (1, 1, "exit code 1 on 50 rocks", 1)):
-            result = self.scaling("--sizes", "50,100", "--force", code=code, stand_in_code=stand_in_code)
+            result = self.run_it("--sizes", "50,100", "--force", code=code, stand_in_code=stand_in_code)
             self.assertIn(words, result.stderr)
             self.assertEqual(len(self.calls()), calls)
 
@@ -93,7 +68,7 @@ class ScalingTest(unittest.TestCase):
                                                                     "6"], "--measure-every is 6"),
                                  (["--seed", "x"], "--seed is 'x'"), (["--fast"], "unknown option '--fast'")):
             with self.subTest(arguments):
-                result = self.scaling(*arguments, code=1)
+                result = self.run_it(*arguments, code=1)
                 self.assertIn(words, result.stderr)
                 self.assertEqual(len(result.stderr.splitlines()), 1)
         self.assertEqual(self.calls(), [])

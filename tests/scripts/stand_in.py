@@ -1,0 +1,36 @@
+"""Tests of a script with a stand-in for the program, which notes what it was called with."""
+import os
+import pathlib
+import tempfile
+import unittest
+
+from synthetic import run_script
+
+
+class StandInCase(unittest.TestCase):
+    """script: its name in scripts/. stand_in: text of the program that it runs; reads STAND_IN_LOG, STAND_IN_CODE."""
+    script = stand_in = None
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.directory = pathlib.Path(scratch.name)
+        self.log = self.directory / "log"
+        self.log.touch()
+        self.program = self.directory / "cleave"
+        self.program.write_text(self.stand_in)
+        self.program.chmod(0o755)
+
+    def run_it(self, *arguments, code=0, stand_in_code=0):
+        environment = dict(os.environ,
+                           CLEAVE_PROGRAM=str(self.program),
+                           STAND_IN_LOG=str(self.log),
+                           STAND_IN_CODE=str(stand_in_code))
+        result = run_script(self.script, "--out", self.directory / "out", *arguments, env=environment)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result
+
+    def calls(self):
+        lines = self.log.read_text().splitlines()
+        self.log.write_text("")
+        return lines
