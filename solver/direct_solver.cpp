@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,6 @@
 namespace cleave {
 namespace {
 
-constexpr double kLeastCompliance = 1e-15;  // of d_r: below, D = 1 / C is no number to factor with
 constexpr double kProximalDeltas[] = {0, 1e-9, 1e-11};  // tried in this order; 0 is the problem as it is
 constexpr int kMostProximalSteps = 50;
 constexpr int kStalledProximalSteps = 8;  // without the residual falling by a tenth, before giving up
@@ -35,6 +35,20 @@ struct Best {
     state.update_velocity();
   }
 };
+
+// Where the limit cannot be met by any impulses in double precision, a text that says so: their last digit is
+// a velocity above it. Bodies wedged between others that cannot give way need such impulses.
+std::string rounding_note(const PreparedStep& step, const Solution& solution) {
+  double largest = 0;
+  for (int r = 0; r < step.row_count(); ++r) {
+    largest = std::max(largest, step.diagonal()[r] * std::abs(solution.impulse[r]));
+  }
+  const double rounding = std::numeric_limits<double>::epsilon() * largest;
+  if (!(rounding > exact_limit_m_per_s(step))) return "";
+  std::ostringstream text;
+  text << ", which is below the rounding of its impulses, " << rounding << " m/s";
+  return text.str();
+}
 
 struct Link {
   std::string_view name;
@@ -163,15 +177,15 @@ bool DirectSolver::attempt(SolveSummary& summary, double delta, std::span<const 
   return run_chain(summary, warm_impulse) && (delta == 0 || run_proximal(summary));
 }
 
-// The problem itself where its compliance can be divided by; proximal steps where it cannot, or where it is
-// so small that rounding kept the first attempt above the limit.
+// The problem itself; then proximal steps where compliance is so small, or zero, that rounding kept the first
+// attempt above the limit.
 bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& problem,
                                 std::span<const double> warm_impulse) {
   const double stiffest = least_relative_compliance(step_);
   attempt_best_.clear();
   int attempts = 0;
   for (double delta : kProximalDeltas) {
-    if (delta == 0 ? stiffest < kLeastCompliance : stiffest >= delta) continue;
+    if (delta > 0 && stiffest >= delta) continue;
     if (attempts++ > 0) ++summary.fallbacks;
     if (attempt(summary, delta, warm_impulse)) return true;
     if (delta > 0) step_.prepare(problem);
@@ -200,7 +214,8 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const 
   step_.velocity(solution.impulse, solution.velocity);
   if (!solved) {
     summary.status = SolveStatus::not_converged;
-    summary.message = "strategy " + summary.strategy + " stopped above the limit";
+    summary.message =
+        "strategy " + summary.strategy + " stopped above the limit" + rounding_note(step_, solution);
     for (double v : solution.velocity) {
       if (!std::isfinite(v)) summary.status = SolveStatus::diverged;
     }

@@ -15,6 +15,10 @@ namespace cleave {
 // impulse.
 enum class RowState : std::uint8_t { free, lower, upper, held };
 
+// Rows with less compliance than this, in units of d_r, are factored as if they had it: a larger D = 1 / C
+// loses the soft directions to rounding. Residuals are those of C, so that increments correct for it.
+inline constexpr double kFactoredCompliance = 3e-13;
+
 struct SolveState {
   SolveState(const SolveOptions& solve_options, StageClock& clock)
       : options(solve_options), tasks(clock, solve_options.threads) {}
@@ -29,8 +33,8 @@ struct SolveState {
   // Row states read off the impulses: at a bound exactly means bound, everything else free.
   void states_from_impulses();
 
-  // Factors the system of the free rows (D = 1/C; 0 on bounded rows); bounded impulses are set to their
-  // bound. False when the kernel finds a non-positive pivot.
+  // Factors the system of the free rows (D = 1 / C, C at least kFactoredCompliance d_r; 0 on bounded rows);
+  // bounded impulses are set to their bound. False when the kernel finds a non-positive pivot.
   bool factor_free();
 
   // One step of iterative refinement on the free rows with the present factor, in increments:
