@@ -8,6 +8,7 @@
 #include <new>
 
 #include "harness/hash.h"
+#include "harness/part_condition.h"
 #include "harness/solver_choices.h"
 
 namespace cleave {
@@ -54,10 +55,11 @@ double median(const Items& items, Value value) {
 }
 
 template <class Repeats>
-void set_split(const Repeats& repeats, StepRecord& row) {
+void set_split(const StepProblem& problem, const Repeats& repeats, StepRecord& row) {
   const Split& split = *repeats.front().split;
   row.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
   row.set_partition(measure_partition(split.graph, split.parts.part_of_body));
+  row.part_condition_max = largest_part_condition(problem, split.parts.part_of_body);
   row.t_graph_ms = median(repeats, [](const auto& repeat) { return repeat.split->graph_ms; });
   row.t_partition_ms = median(repeats, [](const auto& repeat) { return repeat.split->partition_ms; });
   row.t_refine_ms = median(repeats, [](const auto& repeat) { return repeat.split->refine_ms; });
@@ -144,7 +146,7 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   row.repeat_count = repeats_;
   row.status = to_string(chosen.outcome.status);
   row.ode_messages += chosen.outcome.ode_messages;
-  if (splitter_) set_split(repeats, row);
+  if (splitter_) set_split(problem, repeats, row);
   row.set_summary(chosen.outcome.summary);
   row.t_s_min_ms = std::ranges::min(repeats, {}, total_ms).outcome.summary.times.total_ms;
   set_verdict(problem, chosen.outcome, row);

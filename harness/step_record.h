@@ -71,6 +71,7 @@ struct StepRecord {
   std::string problem_file = "-";
   double joint_drift_m = kUnmeasured, last_body_z_m = kUnmeasured;
   std::string status_reason = "-";
+  double part_condition_max = kUnmeasured;
 
   // Parts of a row that are copied from one result each.
   void set_partition_before(const PartitionMetrics& metrics);
@@ -186,6 +187,8 @@ void visit_fields(Record& r, Visitor&& visit) {
   visit("joint_drift_m", r.joint_drift_m, "widest gap of a joint after the advance, 0 without joints");
   visit("last_body_z_m", r.last_body_z_m, "height of the last body's centre after the advance");
   visit("status_reason", r.status_reason, "why the status is not ok, as far as the solver says");
+  visit("part_condition_max", r.part_condition_max,
+        "largest condition number of a part's matrix with all its interior rows free, 1-norm, SI units");
 }
 
 // "run_id,scene,...\n"
