@@ -144,7 +144,8 @@ std::vector<OptionSpec> experiment_options() {
       flag("record-motion",
            "write bodies, graph and parts of every step to motion.h5, for pictures and the viewer",
            at(&RunOptions::record_motion)),
-      flag("reuse-analysis", "keep a solver's symbolic analysis while the structure is unchanged",
+      flag("reuse-analysis",
+           "keep a solver's symbolic analysis while parts stay and contacts fit its pattern",
            at(&RunOptions::reuse_analysis)),
   };
 }

@@ -35,17 +35,24 @@ void BlockCholesky::analyze(int node_count, std::span<const std::pair<int, int>>
   position_values_.resize(6 * static_cast<std::size_t>(node_count));
 }
 
-BlockCholesky::Place BlockCholesky::place(int first_node, int second_node) const {
+// Its place among the rows of the supernode of its column; -1 outside the pattern.
+int BlockCholesky::row_of_block(int first_node, int second_node) const {
   const int p = symbolic_.position_of_node()[first_node], q = symbolic_.position_of_node()[second_node];
   const int column = std::min(p, q), row = std::max(p, q);
   const Supernode& s = symbolic_.supernodes()[symbolic_.supernode_at_position()[column]];
   const auto begin = symbolic_.rows().begin() + s.first_row, end = begin + s.row_count;
   const auto found = std::lower_bound(begin, end, row);
-  assert(found != end && *found == row);
+  return found != end && *found == row ? static_cast<int>(found - begin) : -1;
+}
+
+BlockCholesky::Place BlockCholesky::place(int first_node, int second_node) const {
+  const int p = symbolic_.position_of_node()[first_node], q = symbolic_.position_of_node()[second_node];
+  const int column = std::min(p, q), row = row_of_block(first_node, second_node);
+  assert(row >= 0);
+  const Supernode& s = symbolic_.supernodes()[symbolic_.supernode_at_position()[column]];
   Place place;
   place.leading_dimension = 6 * s.row_count;
-  place.offset =
-      s.panel_offset + 6 * (found - begin) + 6L * (column - s.first_position) * place.leading_dimension;
+  place.offset = s.panel_offset + 6L * row + 6L * (column - s.first_position) * place.leading_dimension;
   place.transposed = q < p;
   return place;
 }

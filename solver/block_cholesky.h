@@ -28,7 +28,9 @@ class BlockCholesky {
                std::span<const int> stage_of_node = {}, int stage_count = 1);
   const BlockSymbolic& symbolic() const { return symbolic_; }
 
+  // Of a pair that holds() says is in the pattern of the factor, fill included.
   Place place(int first_node, int second_node) const;
+  bool holds(int first_node, int second_node) const { return row_of_block(first_node, second_node) >= 0; }
   double* panels() { return panels_.data(); }
   void set_zero(int stage);
 
@@ -55,6 +57,7 @@ class BlockCholesky {
   const double* panel(const Supernode& s) const { return panels_.data() + s.panel_offset; }
 
  private:
+  int row_of_block(int first_node, int second_node) const;
   void add_update(const Supernode& child, const Supernode& parent);
   bool factor_panel(const Supernode& s);
 

@@ -19,17 +19,37 @@ void add_block(double* target, int ld, const double* gram, bool transposed) {
 void BlockMatrix::analyze(const PreparedStep& step, std::span<const int> bodies,
                           std::span<const int> local_of_body, std::span<const int> groups,
                           std::span<const int> stage_of_local, int stage_count) {
-  step_ = &step;
   bodies_.assign(bodies.begin(), bodies.end());
   stage_of_local_.assign(bodies.size(), 0);
   if (!stage_of_local.empty()) stage_of_local_.assign(stage_of_local.begin(), stage_of_local.end());
+  list_edges(step, local_of_body, groups);
+  cholesky_.analyze(static_cast<int>(bodies.size()), edges_, stage_of_local, stage_count);
+  place_groups(step, local_of_body, groups);
+}
+
+bool BlockMatrix::rebind(const PreparedStep& step, std::span<const int> local_of_body,
+                         std::span<const int> groups) {
+  list_edges(step, local_of_body, groups);
+  for (const auto& [a, b] : edges_) {
+    if (!cholesky_.holds(a, b)) return false;
+  }
+  place_groups(step, local_of_body, groups);
+  return true;
+}
+
+void BlockMatrix::list_edges(const PreparedStep& step, std::span<const int> local_of_body,
+                             std::span<const int> groups) {
   edges_.clear();
   for (int g : groups) {
     const RowGroup& group = step.groups()[g];
     if (group.body_b >= 0) edges_.emplace_back(local_of_body[group.body_a], local_of_body[group.body_b]);
   }
-  cholesky_.analyze(static_cast<int>(bodies.size()), edges_, stage_of_local, stage_count);
+}
 
+void BlockMatrix::place_groups(const PreparedStep& step, std::span<const int> local_of_body,
+                               std::span<const int> groups) {
+  step_ = &step;
+  const int stage_count = cholesky_.symbolic().stage_count();
   entries_.clear();
   entry_first_.assign(stage_count + 1, 0);
   for (int stage = 0; stage < stage_count; ++stage) {

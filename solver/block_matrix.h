@@ -24,6 +24,10 @@ class BlockMatrix {
   void analyze(const PreparedStep& step, std::span<const int> bodies, std::span<const int> local_of_body,
                std::span<const int> groups, std::span<const int> stage_of_local = {}, int stage_count = 1);
 
+  // For the same bodies, stages and local_of_body, other groups: keeps the analysis where every pair is in
+  // its pattern; false, and nothing is changed, where one is not.
+  bool rebind(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
+
   // D (m) >= 0 per row of the whole problem. The last stage comes after the others.
   void assemble(std::span<const double> d, int stage);
   bool factor(int stage) { return cholesky_.factor(stage); }
@@ -38,6 +42,10 @@ class BlockMatrix {
     BlockCholesky::Place a, b, ab;
     int late = -1;  // slot of the Gram matrix kept for the last stage, -1 for none
   };
+
+  void list_edges(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
+  void place_groups(const PreparedStep& step, std::span<const int> local_of_body,
+                    std::span<const int> groups);
 
   const PreparedStep* step_ = nullptr;
   BlockCholesky cholesky_;

@@ -74,7 +74,7 @@ class DirectSolver : public StepSolver {
   void analyze(const StepProblem& problem, std::span<const int> part_of_body);
   bool attempt(SolveSummary& summary, double delta, std::span<const double> warm_impulse);
   bool run_attempts(SolveSummary& summary, const StepProblem& problem, std::span<const double> warm_impulse);
-  bool same_structure(const StepProblem& problem, std::span<const int> part_of_body) const;
+  bool reuse_analysis(const StepProblem& problem, std::span<const int> part_of_body);
   bool run_chain(SolveSummary& summary, std::span<const double> warm_impulse);
   bool run_proximal(SolveSummary& summary);
   Strategy& strategy(std::string_view name);
@@ -87,6 +87,7 @@ class DirectSolver : public StepSolver {
   PreparedStep step_;
   SolveState state_;
   std::vector<Link> links_;  // strategies made so far
+  bool analyzed_ = false;
   std::vector<int> analyzed_body_, analyzed_part_;
   ProximalStep proximal_;
   Best chain_best_, proximal_best_, attempt_best_;
@@ -105,18 +106,21 @@ Strategy& DirectSolver::strategy(std::string_view name) {
   throw std::logic_error("no strategy of this name: " + std::string(name));
 }
 
-bool DirectSolver::same_structure(const StepProblem& problem, std::span<const int> part_of_body) const {
-  return problem.row_body == analyzed_body_ && std::ranges::equal(part_of_body, analyzed_part_);
+// Rows between the same bodies, or at least between pairs that the analysed pattern has a place for.
+bool DirectSolver::reuse_analysis(const StepProblem& problem, std::span<const int> part_of_body) {
+  if (!analyzed_ || !std::ranges::equal(part_of_body, analyzed_part_)) return false;
+  return problem.row_body == analyzed_body_ || kernel_->rebind(step_, part_of_body, state_.tasks);
 }
 
 void DirectSolver::analyze(const StepProblem& problem, std::span<const int> part_of_body) {
+  const bool reused = options_.reuse_analysis && reuse_analysis(problem, part_of_body);
   {
     StageTimer timer(clock_, Stage::analyze);
-    if (options_.reuse_analysis && same_structure(problem, part_of_body)) return;
+    analyzed_ = true;
     analyzed_body_ = problem.row_body;
     analyzed_part_.assign(part_of_body.begin(), part_of_body.end());
   }
-  kernel_->analyze(step_, part_of_body, state_.tasks);
+  if (!reused) kernel_->analyze(step_, part_of_body, state_.tasks);
 }
 
 // Runs the strategies one after the other until one succeeds; each hand-over is counted. When all fail, the

@@ -23,7 +23,7 @@ struct SolveOptions {
   double target_m_per_s = 1e-11;  // residual aimed at; exact is judged at 1e-9
   int max_iterations = 100;       // of the strategy; a miss is a status, not a result
   int sweeps = 5;                 // Gauss-Seidel sweeps: predictor of pivot, length of pgs
-  bool reuse_analysis = false;    // keep the symbolic analysis while the pattern and the parts are unchanged
+  bool reuse_analysis = false;    // keep the symbolic analysis while parts stay and rows fit its pattern
 };
 
 struct SolveSummary {

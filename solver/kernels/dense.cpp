@@ -13,25 +13,18 @@ class DenseKernel : public Kernel {
   void analyze(const PreparedStep& step, std::span<const int>, ParallelTasks& tasks) override {
     StageTimer timer(tasks.clock(), Stage::analyze);
     step_ = &step;
-    const StepProblem& problem = step.problem();
-    const int n = step.body_count(), m = step.row_count();
-    mass_.setZero(6 * n, 6 * n);
-    for (int i = 0; i < n; ++i) {
-      for (int k = 0; k < 36; ++k) mass_(6 * i + k / 6, 6 * i + k % 6) = problem.mass[36 * i + k];
-    }
-    jacobian_.setZero(m, 6 * n);
-    for (int r = 0; r < m; ++r) {
-      for (int k = 0; k < 12; ++k) {
-        const int body = problem.row_body[2 * r + k / 6];
-        if (body >= 0) jacobian_(r, 6 * body + k % 6) = problem.jacobian[12 * r + k];
-      }
-    }
+  }
+
+  bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override {
+    analyze(step, part_of_body, tasks);  // no pattern, so every step fits
+    return true;
   }
 
   bool factor(std::span<const double> d, ParallelTasks& tasks) override {
     d_ = Eigen::Map<const Eigen::VectorXd>(d.data(), static_cast<Eigen::Index>(d.size()));
     {
       StageTimer timer(tasks.clock(), Stage::assemble);
+      expand();
       h_ = mass_;
       h_.noalias() += jacobian_.transpose() * d_.asDiagonal() * jacobian_;
     }
@@ -56,6 +49,23 @@ class DenseKernel : public Kernel {
   }
 
  private:
+  // M and J as dense matrices.
+  void expand() {
+    const StepProblem& problem = step_->problem();
+    const int n = step_->body_count(), m = step_->row_count();
+    mass_.setZero(6 * n, 6 * n);
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < 36; ++k) mass_(6 * i + k / 6, 6 * i + k % 6) = problem.mass[36 * i + k];
+    }
+    jacobian_.setZero(m, 6 * n);
+    for (int r = 0; r < m; ++r) {
+      for (int k = 0; k < 12; ++k) {
+        const int body = problem.row_body[2 * r + k / 6];
+        if (body >= 0) jacobian_(r, 6 * body + k % 6) = problem.jacobian[12 * r + k];
+      }
+    }
+  }
+
   const PreparedStep* step_ = nullptr;
   Eigen::MatrixXd mass_, jacobian_, h_;
   Eigen::VectorXd d_;

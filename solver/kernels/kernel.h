@@ -23,6 +23,10 @@ class Kernel {
   // kernels that do not split.
   virtual void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) = 0;
 
+  // Instead of analyze, for the bodies and parts analysed last but other rows: true where every pair of
+  // bodies that shares a row has its place in the analysed pattern, whose order is then kept. False: analyze.
+  virtual bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) = 0;
+
   // Numeric factorisation for D (m) >= 0. False when the matrix is not positive definite to working
   // precision.
   virtual bool factor(std::span<const double> d, ParallelTasks& tasks) = 0;

@@ -14,13 +14,14 @@ class MonolithicKernel : public Kernel {
  public:
   void analyze(const PreparedStep& step, std::span<const int>, ParallelTasks& tasks) override {
     StageTimer timer(tasks.clock(), Stage::analyze);
-    step_ = &step;
-    bodies_.resize(step.body_count());
-    groups_.resize(step.groups().size());
-    std::iota(bodies_.begin(), bodies_.end(), 0);
-    std::iota(groups_.begin(), groups_.end(), 0);
+    number(step);
     matrix_.analyze(step, bodies_, bodies_, groups_);
-    weighted_.resize(step.row_count());
+  }
+
+  bool rebind(const PreparedStep& step, std::span<const int>, ParallelTasks& tasks) override {
+    StageTimer timer(tasks.clock(), Stage::analyze);
+    number(step);
+    return matrix_.rebind(step, bodies_, groups_);
   }
 
   bool factor(std::span<const double> d, ParallelTasks& tasks) override {
@@ -48,6 +49,15 @@ class MonolithicKernel : public Kernel {
   double local_mflop() const override { return matrix_.cholesky().symbolic().factor_flops(0) * 1e-6; }
 
  private:
+  void number(const PreparedStep& step) {
+    step_ = &step;
+    bodies_.resize(step.body_count());
+    groups_.resize(step.groups().size());
+    std::iota(bodies_.begin(), bodies_.end(), 0);
+    std::iota(groups_.begin(), groups_.end(), 0);
+    weighted_.resize(step.row_count());
+  }
+
   const PreparedStep* step_ = nullptr;
   BlockMatrix matrix_;
   std::vector<int> bodies_, groups_;

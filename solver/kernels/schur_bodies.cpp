@@ -22,6 +22,7 @@ namespace {
 class SchurBodiesKernel : public Kernel {
  public:
   void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
+  bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
   bool factor(std::span<const double> d, ParallelTasks& tasks) override;
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override;
@@ -37,6 +38,8 @@ class SchurBodiesKernel : public Kernel {
   }
 
  private:
+  void number(const PreparedStep& step, std::span<const int> part_of_body);
+
   const PreparedStep* step_ = nullptr;
   std::span<const double> d_;
   BlockMatrix matrix_;
@@ -48,34 +51,50 @@ class SchurBodiesKernel : public Kernel {
   std::vector<std::vector<double>> carry_, scratch_;  // one per part
 };
 
-void SchurBodiesKernel::analyze(const PreparedStep& step, std::span<const int> part_of_body,
-                                ParallelTasks& tasks) {
-  StageTimer timer(tasks.clock(), Stage::analyze);
+// Rows and cut edges of a step.
+void SchurBodiesKernel::number(const PreparedStep& step, std::span<const int> part_of_body) {
   step_ = &step;
-  parts_ = 0;
-  for (int part : part_of_body) parts_ = std::max(parts_, part + 1);
+  bodies_.resize(step.body_count());
+  groups_.resize(step.groups().size());
+  std::iota(bodies_.begin(), bodies_.end(), 0);
+  std::iota(groups_.begin(), groups_.end(), 0);
+  weighted_.resize(step.row_count());
   cut_edges_.clear();
   for (const RowGroup& group : step.groups()) {
     if (group.body_b >= 0 && part_of_body[group.body_a] != part_of_body[group.body_b]) {
       cut_edges_.emplace_back(group.body_a, group.body_b);
     }
   }
+}
+
+void SchurBodiesKernel::analyze(const PreparedStep& step, std::span<const int> part_of_body,
+                                ParallelTasks& tasks) {
+  StageTimer timer(tasks.clock(), Stage::analyze);
+  number(step, part_of_body);
+  parts_ = 0;
+  for (int part : part_of_body) parts_ = std::max(parts_, part + 1);
   const std::vector<char> cover = vertex_cover(step.body_count(), cut_edges_);
   stage_of_body_.assign(part_of_body.begin(), part_of_body.end());
   cover_bodies_ = 0;
   for (std::size_t body = 0; body < cover.size(); ++body) {
     if (cover[body]) stage_of_body_[body] = parts_, ++cover_bodies_;
   }
-  bodies_.resize(step.body_count());
-  groups_.resize(step.groups().size());
-  std::iota(bodies_.begin(), bodies_.end(), 0);
-  std::iota(groups_.begin(), groups_.end(), 0);
   matrix_.analyze(step, bodies_, bodies_, groups_, stage_of_body_, parts_ + 1);
   factored_.resize(parts_);
-  weighted_.resize(step.row_count());
   by_node_.resize(6 * static_cast<std::size_t>(step.body_count()));
   if (static_cast<int>(carry_.size()) < parts_) carry_.resize(parts_), scratch_.resize(parts_);
   if (scratch_.empty()) scratch_.resize(1);
+}
+
+// The cover stays, so it must touch the new cut edges.
+bool SchurBodiesKernel::rebind(const PreparedStep& step, std::span<const int> part_of_body,
+                               ParallelTasks& tasks) {
+  StageTimer timer(tasks.clock(), Stage::analyze);
+  number(step, part_of_body);
+  for (const auto& [a, b] : cut_edges_) {
+    if (stage_of_body_[a] != parts_ && stage_of_body_[b] != parts_) return false;
+  }
+  return matrix_.rebind(step, bodies_, groups_);
 }
 
 bool SchurBodiesKernel::factor(std::span<const double> d, ParallelTasks& tasks) {

@@ -45,6 +45,7 @@ struct Part {
 class SchurRowsKernel : public Kernel {
  public:
   void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
+  bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
   bool factor(std::span<const double> d, ParallelTasks& tasks) override;
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override;
@@ -53,6 +54,8 @@ class SchurRowsKernel : public Kernel {
   double interface_mflop() const override { return interface_.mflop(); }
 
  private:
+  void split(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks);
+  void order_cut_rows(int part);
   void number_active_rows();
   void choose_active(int part);
   void form_complement(int part);
@@ -72,31 +75,53 @@ class SchurRowsKernel : public Kernel {
   std::vector<double> lambda_;
 };
 
+void SchurRowsKernel::split(const PreparedStep& step, std::span<const int> part_of_body,
+                            ParallelTasks& tasks) {
+  StageTimer timer(tasks.clock(), Stage::analyze);
+  step_ = &step;
+  split_.split(step, part_of_body);
+  if (static_cast<int>(parts_.size()) < split_.part_count) parts_.resize(split_.part_count);
+  interface_row_.resize(split_.cut_rows.size());
+}
+
 void SchurRowsKernel::analyze(const PreparedStep& step, std::span<const int> part_of_body,
                               ParallelTasks& tasks) {
-  step_ = &step;
-  {
-    StageTimer timer(tasks.clock(), Stage::analyze);
-    split_.split(step, part_of_body);
-    if (static_cast<int>(parts_.size()) < split_.part_count) parts_.resize(split_.part_count);
-    interface_row_.resize(split_.cut_rows.size());
-  }
+  split(step, part_of_body, tasks);
   tasks.run(Stage::analyze, split_.part_count, [&](int i) {
-    Part& part = parts_[i];
     const PartRows& rows = split_.parts[i];
-    part.matrix.analyze(step, rows.bodies, split_.local_of_body, rows.groups);
-    const BlockSymbolic& symbolic = part.matrix.cholesky().symbolic();
-    const auto supernode = [&](int entry) {
-      const int body =
-          step.problem().row_body[2 * split_.cut_rows[rows.cut_rows[entry]] + rows.cut_side[entry]];
-      return symbolic.supernode_at_position()[symbolic.position_of_node()[split_.local_of_body[body]]];
-    };
-    part.order.resize(rows.cut_rows.size());
-    for (std::size_t k = 0; k < part.order.size(); ++k) part.order[k] = static_cast<int>(k);
-    std::sort(part.order.begin(), part.order.end(), [&](int x, int y) {
-      const int sx = supernode(x), sy = supernode(y);
-      return sx != sy ? sx < sy : x < y;
-    });
+    parts_[i].matrix.analyze(step, rows.bodies, split_.local_of_body, rows.groups);
+    order_cut_rows(i);
+  });
+}
+
+// Every part decides for itself.
+bool SchurRowsKernel::rebind(const PreparedStep& step, std::span<const int> part_of_body,
+                             ParallelTasks& tasks) {
+  split(step, part_of_body, tasks);
+  tasks.run(Stage::analyze, split_.part_count, [&](int i) {
+    const PartRows& rows = split_.parts[i];
+    if (!parts_[i].matrix.rebind(step, split_.local_of_body, rows.groups)) {
+      parts_[i].matrix.analyze(step, rows.bodies, split_.local_of_body, rows.groups);
+    }
+    order_cut_rows(i);
+  });
+  return true;
+}
+
+void SchurRowsKernel::order_cut_rows(int i) {
+  Part& part = parts_[i];
+  const PartRows& rows = split_.parts[i];
+  const BlockSymbolic& symbolic = part.matrix.cholesky().symbolic();
+  const auto supernode = [&](int entry) {
+    const int body =
+        step_->problem().row_body[2 * split_.cut_rows[rows.cut_rows[entry]] + rows.cut_side[entry]];
+    return symbolic.supernode_at_position()[symbolic.position_of_node()[split_.local_of_body[body]]];
+  };
+  part.order.resize(rows.cut_rows.size());
+  for (std::size_t k = 0; k < part.order.size(); ++k) part.order[k] = static_cast<int>(k);
+  std::sort(part.order.begin(), part.order.end(), [&](int x, int y) {
+    const int sx = supernode(x), sy = supernode(y);
+    return sx != sy ? sx < sy : x < y;
   });
 }
 

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "solver/registry.h"
 #include "solver/step_solver.h"
 #include "tests/solver/allocation_counter.h"
 #include "tests/solver/problem_makers.h"
@@ -33,11 +36,25 @@ TEST(AllocationCountTest, IsSwitchedOff) {
   EXPECT_EQ(allocations.count(), 0);
 }
 
-class AllocationTest : public testing::TestWithParam<const char*> {};
+class AllocationTest : public testing::TestWithParam<std::string> {};
+
+// Every strategy on every kernel but the oracle, whose matrices are Eigen's.
+std::vector<std::string> solver_names() {
+  std::vector<std::string> names = {"exact"};
+  for (const StrategyRow& strategy : strategy_table()) {
+    for (const KernelRow& kernel : kernel_table()) {
+      if (std::string_view(kernel.entry.name) == "dense" || !runs_on(strategy, kernel)) continue;
+      names.push_back(std::string(strategy.entry.name) + ":" + std::string(kernel.entry.name));
+    }
+  }
+  return names;
+}
 
 // Both problems go through one solver object each: the structure is new to it once.
 TEST_P(AllocationTest, SecondSolveOfOneStructureAllocatesNothing) {
-  const StepProblem pile = make_pile(5, {.columns = 3, .rows = 3, .layers = 3});
+  // Soft enough for those that may miss: why a solve failed is a text, and that is allocated.
+  const double cfm = may_miss(GetParam()) ? 1e-1 : 1e-5;
+  const StepProblem pile = make_pile(5, {.columns = 3, .rows = 3, .layers = 3, .cfm = cfm});
   const StepProblem chain = make_chain(5, {.links = 30, .extra_joints = 5, .closed = true});
   for (const StepProblem& problem : {pile, chain}) {
     const std::vector<int> parts = sliced_parts(problem.body_count(), 4);
@@ -61,8 +78,12 @@ TEST_P(AllocationTest, SecondSolveOfOneStructureAllocatesNothing) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, AllocationTest, testing::Values("monolithic", "schur"),
-                         [](const auto& info) { return std::string(info.param); });
+INSTANTIATE_TEST_SUITE_P(Solvers, AllocationTest, testing::ValuesIn(solver_names()), [](const auto& info) {
+  std::string name = info.param;
+  std::ranges::replace_if(
+      name, [](char c) { return c == '-' || c == ':'; }, '_');
+  return name;
+});
 
 }  // namespace
 }  // namespace cleave

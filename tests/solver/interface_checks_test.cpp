@@ -94,6 +94,9 @@ class SpoiltKernel : public Kernel {
   void analyze(const PreparedStep& step, std::span<const int> parts, ParallelTasks& tasks) override {
     kernel_->analyze(step, parts, tasks);
   }
+  bool rebind(const PreparedStep& step, std::span<const int> parts, ParallelTasks& tasks) override {
+    return kernel_->rebind(step, parts, tasks);
+  }
   bool factor(std::span<const double> d, ParallelTasks& tasks) override { return kernel_->factor(d, tasks); }
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override {
