@@ -116,11 +116,15 @@ void InteriorIterate::set_products(Aim aim) {
   }
 }
 
-void InteriorIterate::solve(SolveState& state) {
+void InteriorIterate::set_right_hand_side(SolveState& state) {
   for (std::size_t r = 0; r < fixed_.size(); ++r) state.f_r[r] = fixed_[r] ? 0.0 : -state.slack[r];
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     state.f_r[pairs_[k].row] += pairs_[k].sign * (z_[k] + (now_.c[k] - z_[k] * gap(state, k)) / s_[k]);
   }
+}
+
+void InteriorIterate::solve(SolveState& state) {
+  set_right_hand_side(state);
   std::fill(state.f_v.begin(), state.f_v.end(), 0.0);
   state.kernel->solve(state.f_v, state.f_r, state.dv, state.dlambda, state.tasks);
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
@@ -128,6 +132,21 @@ void InteriorIterate::solve(SolveState& state) {
     now_.dz[k] = (now_.c[k] - z_[k] * now_.ds[k]) / s_[k];
   }
   measure_direction();
+}
+
+double InteriorIterate::rounding(SolveState& state) {
+  set_right_hand_side(state);
+  change_.resize(state.velocity.size());
+  row_error_.resize(fixed_.size());
+  state.step->velocity(state.dlambda, change_);
+  for (std::size_t c = 0; c < change_.size(); ++c) change_[c] -= state.step->problem().free_velocity[c];
+  state.step->jacobian_times(change_, row_error_);
+  double worst = 0;
+  for (std::size_t r = 0; r < fixed_.size(); ++r) {
+    if (fixed_[r]) continue;
+    worst = std::max(worst, std::abs(state.f_r[r] - row_error_[r] - state.dlambda[r] / state.weight[r]));
+  }
+  return worst;
 }
 
 void InteriorIterate::measure_direction() {

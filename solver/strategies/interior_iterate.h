@@ -13,13 +13,13 @@
 //     ds = sigma dlambda + gap,   gap = sigma (lambda - beta) - s,   dz = (c - z ds) / s,
 //
 // where c is the change of s z that is aimed at, leaves the kernel's system with
-// D_r = 1 / (max(C_r, delta d_r) + sum z / s). delta is 0 but for rows with next to no compliance: there it
-// keeps D within what double precision can factor, and as residuals are those of C, it changes the way and
-// not the end. Rows whose bounds coincide are fixed; unbounded rows have no pair. Source: Mehrotra, "On the
-// implementation of a primal-dual interior point method", SIAM J. Optim. 2, 1992; Gondzio, "Multiple
-// centrality corrections in a primal-dual method for linear programming", Comput. Optim. Appl. 6, 1996;
-// Friedlander and Orban, "A primal-dual regularized interior-point method for convex quadratic programs",
-// Math. Program. Comput. 4, 2012.
+// D_r = 1 / (max(C_r, delta d_r) + sum z / s). delta keeps D of rows with next to no compliance within what
+// double precision can factor; as residuals are those of C, it changes the way and not the end. Rows whose
+// bounds coincide are fixed; unbounded rows have no pair. Source: Mehrotra, "On the implementation of a
+// primal-dual interior point method", SIAM J. Optim. 2, 1992; Gondzio, "Multiple centrality corrections in a
+// primal-dual method for linear programming", Comput. Optim. Appl. 6, 1996; Friedlander and Orban, "A
+// primal-dual regularized interior-point method for convex quadratic programs", Math. Program. Comput. 4,
+// 2012.
 #pragma once
 
 #include <vector>
@@ -41,6 +41,9 @@ class InteriorIterate {
   // The direction to an aim: zero products; Mehrotra's target and second-order term, after `affine`; or equal
   // products to first order. One back-substitution each.
   void find_direction(SolveState& state, Aim aim);
+
+  // The largest residual of the direction in the rows of its own system, m/s: what rounding did to it.
+  double rounding(SolveState& state);
 
   // Centrality corrections: where bounds cut the step, products that a longer step would leave far from the
   // target are aimed back, with the factor at hand, while the step grows.
@@ -73,6 +76,7 @@ class InteriorIterate {
   void add_pairs(SolveState& state, int row, double speed);
   double gap(const SolveState& state, std::size_t pair) const;
   void set_products(Aim aim);
+  void set_right_hand_side(SolveState& state);
   void solve(SolveState& state);
   void measure_direction();
 
@@ -85,6 +89,7 @@ class InteriorIterate {
   double largest_step_ = 1, sum_[3] = {};
   std::vector<double> kept_impulse_, kept_s_, kept_z_;
   mutable std::vector<double> row_error_;
+  std::vector<double> change_;  // (n, 6) M^-1 J^T dlambda
 };
 
 }  // namespace cleave

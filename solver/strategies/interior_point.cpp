@@ -23,8 +23,11 @@ constexpr double kShortStep = 0.1;
 // rows leave it undecided for longer. A failed attempt is repeated at a hundredth of the error.
 constexpr struct { double compliance, error; } kFirstPolish[] = {{1e-4, 1e-5}, {1e-9, 1e-6}, {0, 1e-8}};
 constexpr double kNextPolish = 1e-2;
-constexpr int kRaises =
-    3;  // of the compliance that is factored, tenfold, when full steps make the error grow
+// The compliance delta that is factored follows the rounding of the directions, in units of the error they
+// are to remove: from kFactoredCompliance tenfold up or down, within these limits.
+constexpr double kLeastDelta = 1e-14, kMostDelta = 1e-9;
+constexpr double kMuchRounding = 0.1, kLittleRounding = 1e-3;
+constexpr int kRaises = 3;         // of the least delta, when full steps make the error grow all the same
 constexpr double kSettled = 1e-3;  // errors above this, of the velocity scale, may grow
 constexpr double kFullStep = 0.9, kGrowth = 2;
 constexpr int kPatience = 2;  // iterations without progress
@@ -37,13 +40,17 @@ class InteriorPoint : public Strategy {
   enum class Progress { good, finished, rounding };
   Progress watch(const SolveState& state, double error);
   bool polish(SolveState& state);
-  void step(SolveState& state);
+  void step(SolveState& state, double error);
+  void adapt_delta(double rounding);
+  void raise_delta();
   bool is_poor() const;
 
   InteriorIterate iterate_;
   std::vector<double> kept_impulse_;
   double best_error_ = 0, last_step_ = 1;
   int since_best_ = 0, grown_ = 0;
+  double delta_ = 0, least_delta_ = 0;
+  bool rounds_ = false;  // there are rows that delta may matter to
 };
 
 // Mehrotra's second-order term is right for a full step only. Where bounds cut the step it can throw products
@@ -54,12 +61,23 @@ bool InteriorPoint::is_poor() const {
   return step < kShortStep || iterate_.mean_product(kStepFraction * step) > iterate_.mean_product(0);
 }
 
-void InteriorPoint::step(SolveState& state) {
+void InteriorPoint::adapt_delta(double rounding) {
+  if (rounding > kMuchRounding) delta_ = std::min(10 * delta_, kMostDelta);
+  if (rounding < kLittleRounding) delta_ = std::max(0.1 * delta_, least_delta_);
+}
+
+void InteriorPoint::raise_delta() {
+  least_delta_ *= 10;
+  delta_ = std::max(10 * delta_, least_delta_);
+}
+
+void InteriorPoint::step(SolveState& state, double error) {
   using Aim = InteriorIterate::Aim;
   iterate_.find_direction(state, Aim::affine);
   iterate_.find_direction(state, Aim::mehrotra);
   if (is_poor()) iterate_.find_direction(state, Aim::centre);
   iterate_.correct_centrality(state);
+  if (rounds_) adapt_delta(iterate_.rounding(state) / error);
   last_step_ = std::min(1.0, kStepFraction * iterate_.largest_step());
   iterate_.advance(state, last_step_);
 }
@@ -95,10 +113,13 @@ InteriorPoint::Progress InteriorPoint::watch(const SolveState& state, double err
 bool InteriorPoint::run(SolveState& state) {
   const double scale = state.step->velocity_scale(), least = least_relative_compliance(*state.step);
   const double target = state.options.target_m_per_s * scale;
-  double polish_below = 0, delta = kFactoredCompliance;
+  double polish_below = 0;
   for (const auto& first : kFirstPolish) {
     if (polish_below == 0 && least >= first.compliance) polish_below = first.error * scale;
   }
+  delta_ = kFactoredCompliance;
+  least_delta_ = kLeastDelta;
+  rounds_ = least < kMostDelta;
   iterate_.start(state);
   best_error_ = std::numeric_limits<double>::infinity();
   for (int k = 0, raises = 0; k < kMostIterations; ++k) {
@@ -109,7 +130,7 @@ bool InteriorPoint::run(SolveState& state) {
       error = best_error_;
       since_best_ = grown_ = 0;
       if (progress == Progress::finished || raises++ == kRaises) break;
-      delta *= 10;
+      raise_delta();
     }
     if (error <= polish_below) {
       if (polish(state)) return true;
@@ -117,9 +138,15 @@ bool InteriorPoint::run(SolveState& state) {
       polish_below = std::max(kNextPolish * error, target);
     }
     ++state.summary->iterations;
-    if (!iterate_.factor(state, delta)) return false;
-    step(state);
+    if (iterate_.factor(state, delta_)) {
+      step(state, error);
+    } else if (raises++ < kRaises) {
+      raise_delta();
+    } else {
+      break;
+    }
   }
+  iterate_.restore(state);
   return state.residual() <= exact_limit_m_per_s(*state.step);
 }
 
