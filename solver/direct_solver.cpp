@@ -132,6 +132,7 @@ bool DirectSolver::run_chain(SolveSummary& summary, std::span<const double> warm
   for (int k = 0; k < choice.count; ++k) {
     if (k > 0) {
       ++summary.fallbacks;
+      if (strategy_ == "auto") summary.auto_reason += ", " + std::string(choice.names[k - 1]) + " stalled";
       state_.begin(step_, *state_.kernel, summary, warm_impulse);  // not from where the last one got lost
     }
     summary.strategy = choice.names[k];

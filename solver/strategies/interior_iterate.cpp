@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 namespace cleave {
@@ -19,6 +20,7 @@ constexpr int kCorrections = 2;       // centrality corrections of an iteration,
 constexpr double kLongStep = 0.95;    // that need none
 constexpr double kReach = 0.3;        // how much longer a step they aim at
 constexpr double kBand = 0.1;         // products within [target kBand, target / kBand] stay
+constexpr std::size_t kLanes = 4;     // running values side by side, for vector instructions
 constexpr double kLeastGain = 0.1;    // of kReach, for a correction to be kept
 
 }  // namespace
@@ -78,7 +80,9 @@ void InteriorIterate::start(SolveState& state) {
     const double speed = std::min(std::sqrt(energy * state.step->diagonal()[r]), kMostSpeed * fastest);
     add_pairs(state, r, std::max(kLeastSpeed, speed));
   }
-  for (std::vector<double>* v : {&now_.ds, &now_.dz, &now_.c}) v->assign(pairs_.size(), 0.0);
+  for (std::vector<double>* v : {&now_.ds, &now_.dz, &now_.c, &inverse_s_, &inverse_z_, &gap_}) {
+    v->assign(pairs_.size(), 0.0);
+  }
   state.update_velocity();
 }
 
@@ -87,14 +91,16 @@ bool InteriorIterate::factor(SolveState& state, double delta) {
   for (std::size_t r = 0; r < fixed_.size(); ++r) {
     state.weight[r] = std::max(problem.compliance[r], delta * state.step->diagonal()[r]);
   }
-  for (std::size_t k = 0; k < pairs_.size(); ++k) state.weight[pairs_[k].row] += z_[k] / s_[k];
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    const auto [row, sign, bound] = pairs_[k];
+    inverse_s_[k] = 1 / s_[k];
+    inverse_z_[k] = 1 / z_[k];
+    gap_[k] = sign * (state.impulse[row] - bound) - s_[k];
+    state.weight[row] += z_[k] * inverse_s_[k];
+  }
   for (std::size_t r = 0; r < fixed_.size(); ++r) state.weight[r] = fixed_[r] ? 0.0 : 1 / state.weight[r];
   ++state.summary->factorizations;
   return state.kernel->factor(state.weight, state.tasks);
-}
-
-double InteriorIterate::gap(const SolveState& state, std::size_t k) const {
-  return pairs_[k].sign * (state.impulse[pairs_[k].row] - pairs_[k].bound) - s_[k];
 }
 
 void InteriorIterate::find_direction(SolveState& state, Aim aim) {
@@ -119,7 +125,7 @@ void InteriorIterate::set_products(Aim aim) {
 void InteriorIterate::set_right_hand_side(SolveState& state) {
   for (std::size_t r = 0; r < fixed_.size(); ++r) state.f_r[r] = fixed_[r] ? 0.0 : -state.slack[r];
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    state.f_r[pairs_[k].row] += pairs_[k].sign * (z_[k] + (now_.c[k] - z_[k] * gap(state, k)) / s_[k]);
+    state.f_r[pairs_[k].row] += pairs_[k].sign * (z_[k] + (now_.c[k] - z_[k] * gap_[k]) * inverse_s_[k]);
   }
 }
 
@@ -128,8 +134,10 @@ void InteriorIterate::solve(SolveState& state) {
   std::fill(state.f_v.begin(), state.f_v.end(), 0.0);
   state.kernel->solve(state.f_v, state.f_r, state.dv, state.dlambda, state.tasks);
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    now_.ds[k] = pairs_[k].sign * state.dlambda[pairs_[k].row] + gap(state, k);
-    now_.dz[k] = (now_.c[k] - z_[k] * now_.ds[k]) / s_[k];
+    now_.ds[k] = pairs_[k].sign * state.dlambda[pairs_[k].row] + gap_[k];
+  }
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    now_.dz[k] = (now_.c[k] - z_[k] * now_.ds[k]) * inverse_s_[k];
   }
   measure_direction();
 }
@@ -150,16 +158,23 @@ double InteriorIterate::rounding(SolveState& state) {
 }
 
 void InteriorIterate::measure_direction() {
-  double fastest = 1, sum[3] = {};
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+  double fastest[kLanes], sum[3][kLanes] = {};
+  std::fill(fastest, fastest + kLanes, 1.0);
+  const auto visit = [&](std::size_t k, std::size_t lane) {
     const double s = s_[k], z = z_[k], ds = now_.ds[k], dz = now_.dz[k];
-    fastest = std::max(fastest, std::max(-ds / s, -dz / z));
-    sum[0] += s * z;
-    sum[1] += s * dz + z * ds;
-    sum[2] += ds * dz;
+    const double fall = std::max(-ds * inverse_s_[k], -dz * inverse_z_[k]);
+    fastest[lane] = fastest[lane] < fall ? fall : fastest[lane];
+    sum[0][lane] += s * z;
+    sum[1][lane] += s * dz + z * ds;
+    sum[2][lane] += ds * dz;
+  };
+  const std::size_t whole = pairs_.size() / kLanes * kLanes;
+  for (std::size_t k = 0; k < whole; k += kLanes) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) visit(k + lane, lane);
   }
-  largest_step_ = 1 / fastest;
-  std::copy_n(sum, 3, sum_);
+  for (std::size_t k = whole; k < pairs_.size(); ++k) visit(k, 0);
+  largest_step_ = 1 / *std::max_element(fastest, fastest + kLanes);
+  for (int power = 0; power < 3; ++power) sum_[power] = std::accumulate(sum[power], sum[power] + kLanes, 0.0);
 }
 
 double InteriorIterate::mean_product(double step) const {

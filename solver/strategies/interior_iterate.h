@@ -74,7 +74,6 @@ class InteriorIterate {
 
   void choose_impulses(SolveState& state);
   void add_pairs(SolveState& state, int row, double speed);
-  double gap(const SolveState& state, std::size_t pair) const;
   void set_products(Aim aim);
   void set_right_hand_side(SolveState& state);
   void solve(SolveState& state);
@@ -83,6 +82,7 @@ class InteriorIterate {
   std::vector<Pair> pairs_;  // ascending row
   std::vector<char> fixed_;  // (m)
   std::vector<double> s_, z_;
+  std::vector<double> inverse_s_, inverse_z_, gap_;  // of the iterate that was factored
   Direction now_, before_;
   double target_ = 0;  // product that Mehrotra's direction aims at
   // Of the direction: where it ends, and the sum of s z along it, sum_[0] + sum_[1] step + sum_[2] step^2.
