@@ -21,7 +21,10 @@ constexpr double kStepFraction = 0.995;  // of the way to the nearest bound
 constexpr double kShortStep = 0.1;
 // First attempt at the active set, as an error in units of the velocity scale, by least C_r / d_r: stiffer
 // rows leave it undecided for longer. A failed attempt is repeated at a hundredth of the error.
-constexpr struct { double compliance, error; } kFirstPolish[] = {{1e-4, 1e-5}, {1e-9, 1e-6}, {0, 1e-8}};
+struct FirstPolish {
+  double compliance, error;
+};
+constexpr FirstPolish kFirstPolish[] = {{1e-4, 1e-5}, {1e-9, 1e-6}, {1e-11, 1e-8}, {0, 1e-10}};
 constexpr double kNextPolish = 1e-2;
 // The compliance delta that is factored follows the rounding of the directions, in units of the error they
 // are to remove: from kFactoredCompliance tenfold up or down, within these limits.
@@ -114,7 +117,7 @@ bool InteriorPoint::run(SolveState& state) {
   const double scale = state.step->velocity_scale(), least = least_relative_compliance(*state.step);
   const double target = state.options.target_m_per_s * scale;
   double polish_below = 0;
-  for (const auto& first : kFirstPolish) {
+  for (const FirstPolish& first : kFirstPolish) {
     if (polish_below == 0 && least >= first.compliance) polish_below = first.error * scale;
   }
   delta_ = kFactoredCompliance;
