@@ -1,5 +1,5 @@
-// Rows without compliance. With C_r = 0 the kernels' D_r = 1 / C_r does not exist and redundant rows make the
-// impulses ambiguous. The proximal point method solves a sequence of problems that do have compliance,
+// The second resort for rows with little or no compliance, where rounding kept a strategy above the limit.
+// The proximal point method solves a sequence of problems that have more of it,
 //
 //     lambda_{k+1} solves the step problem with  C + delta  in place of  C  and  b + delta lambda_k  in place
 //     of  b,
