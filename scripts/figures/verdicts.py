@@ -127,11 +127,12 @@ def _counted(claim, places, column):
 
 
 def _decide(verdict):
-    least, most = verdict.least, verdict.claim.most
+    least, most, column = verdict.least, verdict.claim.most, verdict.claim.column
+    measured = "by time" if column.startswith("t_") else f"by {column}"
     if verdict.low >= least and verdict.high <= most:
-        verdict.verdict, verdict.reason = REPRODUCED, "by time"
+        verdict.verdict, verdict.reason = REPRODUCED, measured
     elif verdict.high < least or verdict.low > most:
-        verdict.verdict, verdict.reason = NOT_REPRODUCED, "by time"
+        verdict.verdict, verdict.reason = NOT_REPRODUCED, measured
     else:
         verdict.verdict, verdict.reason = _by_sizes(verdict, least, most)
 
