@@ -13,6 +13,7 @@
 #include "harness/joint_rows.h"
 #include "harness/step_columns.h"
 #include "harness/stopwatch.h"
+#include "solver/parallel_tasks.h"
 
 namespace cleave {
 namespace {
@@ -94,6 +95,7 @@ Simulation::Simulation(const RunOptions& options, const std::atomic<bool>& stop,
 
 RunSummary Simulation::run(CsvRecorder& recorder, const Progress& progress) {
   Stopwatch watch;
+  start_threads(options_.threads);
   if (options_.mode == RunMode::lockstep) {
     Combination advancing = make_advancing_combination(options_);
     run_world(combinations_, advancing, recorder, progress);

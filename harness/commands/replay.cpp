@@ -20,6 +20,7 @@
 #include "harness/progress.h"
 #include "harness/step_columns.h"
 #include "harness/stopwatch.h"
+#include "solver/parallel_tasks.h"
 
 namespace cleave {
 namespace {
@@ -127,6 +128,7 @@ class Replay {
 
   RunSummary run(const fs::path& out) {
     Stopwatch watch;
+    start_threads(options_.solve.threads);
     CsvRecorder recorder(out / "steps.csv");
     ProgressLine line("replay");
     const int total = static_cast<int>(options_.files.size());
