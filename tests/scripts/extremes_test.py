@@ -2,32 +2,30 @@
 import unittest
 
 from stand_in import StandInCase
-from synthetic import ROOT
 
-STAND_IN = f"""#!/usr/bin/python3
-import os, sys
-sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
-from report_data import manifest, rows_of
-from synthetic import write_manifest, write_steps
+# Only the columns and fields that the scripts look at: there are many runs.
+STAND_IN = """#!/usr/bin/python3
+import json, os, pathlib, sys
 given = dict(zip(sys.argv[2::2], sys.argv[3::2]))
 with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write(" ".join(sys.argv[1:]) + "\\n")
 code = int(os.environ.get("STAND_IN_CODE", 0))
 if code not in (0, 2) and code < 1000:
     sys.exit(code)
-every = int(given["--measure-every"])
-rows = rows_of(given["--scene"], ["-"], steps=range(every - 1, int(given["--steps"]), every),
-               factorizations=code - 1000 if code >= 1000 else 20, status="not_converged" if code == 2 else "ok")
-write_steps(given["--out"], rows)
-write_manifest(given["--out"], **dict(manifest(given["--scene"]), argv=sys.argv, utc_end="2026-01-01T00:00:00Z",
-               result={{"rows": len(rows), "rows_ok": len(rows) - (code == 2)}}))
+out, rows = pathlib.Path(given["--out"]), int(given["--steps"]) // int(given["--measure-every"])
+out.mkdir(parents=True, exist_ok=True)
+row = ("not_converged" if code == 2 else "ok") + f",{code - 1000 if code >= 1000 else 20}\\n"
+(out / "steps.csv").write_text("status,factorizations\\n" + rows * row)
+(out / "manifest.json").write_text(json.dumps({
+    "state": "complete", "argv": sys.argv, "utc_end": "2026-01-01T00:00:00Z",
+    "result": {"rows": rows, "rows_ok": 0 if code == 2 else rows}}))
 sys.exit(code if code == 2 else 0)
 """
 
 
 class ExtremesTest(StandInCase):
     script, stand_in = "extremes", STAND_IN
-    QUICK = ("--cfm", "1e-4,0", "--seeds", "7", "--steps", 20)
+    QUICK = ("--cfm", "1e-4,0", "--seeds", "7", "--steps", "20")
 
     def test_every_scene_meets_every_compliance_and_complete_runs_are_kept(self):
         result = self.run_it(*self.QUICK)
@@ -45,12 +43,11 @@ class ExtremesTest(StandInCase):
     def test_too_many_factorisations_break_it_where_a_number_is_set(self):
         self.assertIn("within the number", self.run_it(*self.QUICK, stand_in_code=1040).stdout)
         self.assertIn("not every step", self.run_it(*self.QUICK, "--force", code=3, stand_in_code=1041).stdout)
-        self.run_it("--cfm", "0", "--seeds", "8", "--steps", 20, "--out", self.directory / "rigid", stand_in_code=1099)
+        self.run_it("--cfm", "0", "--seeds", "8", "--steps", "20", "--out", self.directory / "rigid", stand_in_code=1099)
 
     def test_a_step_that_is_not_solved_breaks_it(self):
         result = self.run_it(*self.QUICK, code=3, stand_in_code=2)
-        self.assertIn("20 / 20, ", result.stdout)
-        self.assertIn(" not solved", result.stdout)
+        self.assertIn("20 / 20, 20 not solved", result.stdout)
 
     def test_what_the_program_ends_with_is_passed_on(self):
         self.assertIn("interrupted", self.run_it(*self.QUICK, code=130, stand_in_code=130).stderr)
