@@ -55,7 +55,7 @@ class InteriorPoint : public Strategy {
   std::vector<double> kept_impulse_;
   double best_error_ = 0, last_step_ = 1, polish_below_ = 0;
   int since_best_ = 0, grown_ = 0;
-  double delta_ = 0, least_delta_ = 0;
+  double delta_ = 0, least_delta_ = 0, best_delta_ = 0;
   bool rounds_ = false;  // there are rows that delta may matter to
 };
 
@@ -74,7 +74,7 @@ void InteriorPoint::adapt_delta(double rounding) {
 
 void InteriorPoint::raise_delta() {
   least_delta_ *= 10;
-  delta_ = std::max(10 * delta_, least_delta_);
+  delta_ = std::max(10 * best_delta_, least_delta_);
 }
 
 void InteriorPoint::step(SolveState& state, double error) {
@@ -105,6 +105,7 @@ bool InteriorPoint::polish(SolveState& state) {
 InteriorPoint::Progress InteriorPoint::watch(const SolveState& state, double error) {
   if (error < best_error_) {
     best_error_ = error;
+    best_delta_ = delta_;
     since_best_ = grown_ = 0;
     iterate_.keep(state);
     return Progress::good;
@@ -125,6 +126,7 @@ void InteriorPoint::begin(SolveState& state) {
     }
   }
   delta_ = kFactoredCompliance;
+  best_delta_ = delta_;
   least_delta_ = kLeastDelta;
   rounds_ = least < kMostDelta;
   best_error_ = std::numeric_limits<double>::infinity();
