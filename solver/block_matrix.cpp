@@ -1,6 +1,7 @@
 #include "solver/block_matrix.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "solver/dense_block.h"
 
@@ -35,6 +36,24 @@ bool BlockMatrix::rebind(const PreparedStep& step, std::span<const int> local_of
   }
   place_groups(step, local_of_body, groups);
   return true;
+}
+
+void BlockMatrix::number(const PreparedStep& step) {
+  identity_.resize(std::max<std::size_t>(step.body_count(), step.groups().size()));
+  std::iota(identity_.begin(), identity_.end(), 0);
+}
+
+void BlockMatrix::analyze_whole(const PreparedStep& step, std::span<const int> stage_of_body,
+                                int stage_count) {
+  number(step);
+  const std::span<const int> all(identity_), bodies = all.first(step.body_count());
+  analyze(step, bodies, bodies, all.first(step.groups().size()), stage_of_body, stage_count);
+}
+
+bool BlockMatrix::rebind_whole(const PreparedStep& step) {
+  number(step);
+  const std::span<const int> all(identity_);
+  return rebind(step, all.first(step.body_count()), all.first(step.groups().size()));
 }
 
 void BlockMatrix::list_edges(const PreparedStep& step, std::span<const int> local_of_body,

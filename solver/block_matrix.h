@@ -28,6 +28,10 @@ class BlockMatrix {
   // its pattern; false, and nothing is changed, where one is not.
   bool rebind(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
 
+  // The same with every body and group of a step, by their indices.
+  void analyze_whole(const PreparedStep& step, std::span<const int> stage_of_body = {}, int stage_count = 1);
+  bool rebind_whole(const PreparedStep& step);
+
   // D (m) >= 0 per row of the whole problem. The last stage comes after the others.
   void assemble(std::span<const double> d, int stage);
   bool factor(int stage) { return cholesky_.factor(stage); }
@@ -43,6 +47,7 @@ class BlockMatrix {
     int late = -1;  // slot of the Gram matrix kept for the last stage, -1 for none
   };
 
+  void number(const PreparedStep& step);
   void list_edges(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
   void place_groups(const PreparedStep& step, std::span<const int> local_of_body,
                     std::span<const int> groups);
@@ -50,6 +55,7 @@ class BlockMatrix {
   const PreparedStep* step_ = nullptr;
   BlockCholesky cholesky_;
   std::vector<int> bodies_, stage_of_local_;
+  std::vector<int> identity_;     // 0, 1, ...: at least as many as bodies and as groups
   std::vector<Entry> entries_;    // sorted by stage of assembly
   std::vector<int> entry_first_;  // (stages + 1)
   std::vector<int> late_entries_;

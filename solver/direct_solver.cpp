@@ -186,7 +186,7 @@ bool DirectSolver::attempt(SolveSummary& summary, double delta, std::span<const 
 // attempt above the limit.
 bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& problem,
                                 std::span<const double> warm_impulse) {
-  const double stiffest = least_relative_compliance(step_);
+  const double stiffest = step_.least_relative_compliance();
   attempt_best_.clear();
   int attempts = 0;
   for (double delta : kProximalDeltas) {

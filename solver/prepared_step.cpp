@@ -30,6 +30,7 @@ void PreparedStep::prepare(const StepProblem& problem) {
   }
   mass_jacobian_.assign(12 * static_cast<std::size_t>(m), 0.0);
   diagonal_.resize(m);
+  least_relative_compliance_ = std::numeric_limits<double>::infinity();
   for (int r = 0; r < m; ++r) {
     double d = problem.compliance[r];
     for (int side = 0; side < 2; ++side) {
@@ -41,6 +42,7 @@ void PreparedStep::prepare(const StepProblem& problem) {
       d += j.dot(mj);
     }
     diagonal_[r] = d > 0 ? d : 1;  // a row of zeros constrains nothing
+    least_relative_compliance_ = std::min(least_relative_compliance_, problem.compliance[r] / diagonal_[r]);
   }
   velocity_scale_ = 1;
   for (double v : problem.free_velocity) velocity_scale_ = std::max(velocity_scale_, std::abs(v));

@@ -31,6 +31,9 @@ class PreparedStep {
   std::span<const double> mass_jacobian() const { return mass_jacobian_; }
   std::span<const double> diagonal() const { return diagonal_; }  // (m) d_r = (J M^-1 J^T + C)_rr
   double velocity_scale() const { return velocity_scale_; }       // max(1, largest |v0|), m/s
+  double least_relative_compliance() const {
+    return least_relative_compliance_;
+  }  // min C_r / d_r; inf without rows
 
   // v (n, 6) = v0 + M^-1 J^T lambda
   void velocity(std::span<const double> impulse, std::span<double> v) const;
@@ -47,7 +50,7 @@ class PreparedStep {
   const StepProblem* problem_ = nullptr;
   std::vector<RowGroup> groups_;
   std::vector<double> inverse_mass_, mass_jacobian_, diagonal_;
-  double velocity_scale_ = 1;
+  double velocity_scale_ = 1, least_relative_compliance_ = 0;
 };
 
 }  // namespace cleave

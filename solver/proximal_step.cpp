@@ -1,17 +1,6 @@
 #include "solver/proximal_step.h"
 
-#include <algorithm>
-#include <limits>
-
 namespace cleave {
-
-double least_relative_compliance(const PreparedStep& step) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int r = 0; r < step.row_count(); ++r) {
-    least = std::min(least, step.problem().compliance[r] / step.diagonal()[r]);
-  }
-  return least;
-}
 
 void ProximalStep::begin(const PreparedStep& step, std::span<const double> centre, double relative_delta) {
   problem_ = step.problem();

@@ -17,9 +17,6 @@
 
 namespace cleave {
 
-// min_r C_r / d_r; infinity without rows.
-double least_relative_compliance(const PreparedStep& step);
-
 class ProximalStep {
  public:
   // Copies the problem, adds delta = relative_delta d_r to the rows with less compliance than that, and

@@ -1,7 +1,6 @@
 // Kernel `monolithic`: one sparse block Cholesky factorisation of H = M + J^T D J over all bodies, in a
 // fill-reducing order that is found once per pattern.
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "solver/block_matrix.h"
@@ -14,14 +13,14 @@ class MonolithicKernel : public Kernel {
  public:
   void analyze(const PreparedStep& step, std::span<const int>, ParallelTasks& tasks) override {
     StageTimer timer(tasks.clock(), Stage::analyze);
-    number(step);
-    matrix_.analyze(step, bodies_, bodies_, groups_);
+    bind(step);
+    matrix_.analyze_whole(step);
   }
 
   bool rebind(const PreparedStep& step, std::span<const int>, ParallelTasks& tasks) override {
     StageTimer timer(tasks.clock(), Stage::analyze);
-    number(step);
-    return matrix_.rebind(step, bodies_, groups_);
+    bind(step);
+    return matrix_.rebind_whole(step);
   }
 
   bool factor(std::span<const double> d, ParallelTasks& tasks) override {
@@ -49,18 +48,13 @@ class MonolithicKernel : public Kernel {
   double local_mflop() const override { return matrix_.cholesky().symbolic().factor_flops(0) * 1e-6; }
 
  private:
-  void number(const PreparedStep& step) {
+  void bind(const PreparedStep& step) {
     step_ = &step;
-    bodies_.resize(step.body_count());
-    groups_.resize(step.groups().size());
-    std::iota(bodies_.begin(), bodies_.end(), 0);
-    std::iota(groups_.begin(), groups_.end(), 0);
     weighted_.resize(step.row_count());
   }
 
   const PreparedStep* step_ = nullptr;
   BlockMatrix matrix_;
-  std::vector<int> bodies_, groups_;
   std::span<const double> d_;
   std::vector<double> weighted_;
 };

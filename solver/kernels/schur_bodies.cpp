@@ -9,7 +9,6 @@
 // whose order is constrained to interiors first, so it needs no J H^-1 J^T, and stays factorable where all
 // cut rows are active.
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "solver/block_matrix.h"
@@ -38,13 +37,13 @@ class SchurBodiesKernel : public Kernel {
   }
 
  private:
-  void number(const PreparedStep& step, std::span<const int> part_of_body);
+  void bind(const PreparedStep& step, std::span<const int> part_of_body);
 
   const PreparedStep* step_ = nullptr;
   std::span<const double> d_;
   BlockMatrix matrix_;
   int parts_ = 0, cover_bodies_ = 0;
-  std::vector<int> bodies_, groups_, stage_of_body_;
+  std::vector<int> stage_of_body_;
   std::vector<std::pair<int, int>> cut_edges_;
   std::vector<char> factored_;
   std::vector<double> weighted_, by_node_, x_;
@@ -52,12 +51,8 @@ class SchurBodiesKernel : public Kernel {
 };
 
 // Rows and cut edges of a step.
-void SchurBodiesKernel::number(const PreparedStep& step, std::span<const int> part_of_body) {
+void SchurBodiesKernel::bind(const PreparedStep& step, std::span<const int> part_of_body) {
   step_ = &step;
-  bodies_.resize(step.body_count());
-  groups_.resize(step.groups().size());
-  std::iota(bodies_.begin(), bodies_.end(), 0);
-  std::iota(groups_.begin(), groups_.end(), 0);
   weighted_.resize(step.row_count());
   cut_edges_.clear();
   for (const RowGroup& group : step.groups()) {
@@ -70,7 +65,7 @@ void SchurBodiesKernel::number(const PreparedStep& step, std::span<const int> pa
 void SchurBodiesKernel::analyze(const PreparedStep& step, std::span<const int> part_of_body,
                                 ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
-  number(step, part_of_body);
+  bind(step, part_of_body);
   parts_ = 0;
   for (int part : part_of_body) parts_ = std::max(parts_, part + 1);
   const std::vector<char> cover = vertex_cover(step.body_count(), cut_edges_);
@@ -79,7 +74,7 @@ void SchurBodiesKernel::analyze(const PreparedStep& step, std::span<const int> p
   for (std::size_t body = 0; body < cover.size(); ++body) {
     if (cover[body]) stage_of_body_[body] = parts_, ++cover_bodies_;
   }
-  matrix_.analyze(step, bodies_, bodies_, groups_, stage_of_body_, parts_ + 1);
+  matrix_.analyze_whole(step, stage_of_body_, parts_ + 1);
   factored_.resize(parts_);
   by_node_.resize(6 * static_cast<std::size_t>(step.body_count()));
   if (static_cast<int>(carry_.size()) < parts_) carry_.resize(parts_), scratch_.resize(parts_);
@@ -90,11 +85,11 @@ void SchurBodiesKernel::analyze(const PreparedStep& step, std::span<const int> p
 bool SchurBodiesKernel::rebind(const PreparedStep& step, std::span<const int> part_of_body,
                                ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
-  number(step, part_of_body);
+  bind(step, part_of_body);
   for (const auto& [a, b] : cut_edges_) {
     if (stage_of_body_[a] != parts_ && stage_of_body_[b] != parts_) return false;
   }
-  return matrix_.rebind(step, bodies_, groups_);
+  return matrix_.rebind_whole(step);
 }
 
 bool SchurBodiesKernel::factor(std::span<const double> d, ParallelTasks& tasks) {

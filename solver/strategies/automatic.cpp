@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "solver/proximal_step.h"
-
 namespace cleave {
 namespace {
 
@@ -19,7 +17,7 @@ StrategyChoice choose_strategies(std::string_view strategy, const PreparedStep& 
   if (std::ranges::all_of(problem.row_kind, [](RowKind kind) { return kind == RowKind::bilateral; })) {
     return {{"pivot", "interior-point"}, 2, "bilateral-only"};
   }
-  if (least_relative_compliance(step) >= kPivotCompliance)
+  if (step.least_relative_compliance() >= kPivotCompliance)
     return {{"pivot", "interior-point"}, 2, "compliant"};
   return {{"interior-point", "newton", "pivot"}, 3, "stiff"};
 }

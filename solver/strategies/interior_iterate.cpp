@@ -213,7 +213,7 @@ void InteriorIterate::advance(SolveState& state, double step) {
   state.update_velocity();
 }
 
-double InteriorIterate::error(const SolveState& state) const {
+double InteriorIterate::error(const SolveState& state) {
   double worst = 0;
   row_error_ = state.slack;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {

@@ -54,7 +54,7 @@ class InteriorIterate {
   void advance(SolveState& state, double step);
 
   // The largest violation of the conditions as a velocity (m/s): of the equation in w, and min(d s, z).
-  double error(const SolveState& state) const;
+  double error(const SolveState& state);
 
   // A row is at a bound where the multiplier outweighs the slack, else free.
   void read_active_set(SolveState& state) const;
@@ -88,7 +88,7 @@ class InteriorIterate {
   // Of the direction: where it ends, and the sum of s z along it, sum_[0] + sum_[1] step + sum_[2] step^2.
   double largest_step_ = 1, sum_[3] = {};
   std::vector<double> kept_impulse_, kept_s_, kept_z_;
-  mutable std::vector<double> row_error_;
+  std::vector<double> row_error_;
   std::vector<double> change_;  // (n, 6) M^-1 J^T dlambda
 };
 

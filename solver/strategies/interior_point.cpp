@@ -11,7 +11,6 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/proximal_step.h"
 #include "solver/strategies/interior_iterate.h"
 #include "solver/strategies/strategy.h"
 
@@ -48,13 +47,13 @@ class InteriorPoint : public Strategy {
   bool polish(SolveState& state);
   void step(SolveState& state, double error);
   void adapt_delta(double rounding);
-  void raise_delta();
+  bool raise_delta();
   bool is_poor() const;
 
   InteriorIterate iterate_;
   std::vector<double> kept_impulse_;
   double best_error_ = 0, last_step_ = 1, polish_below_ = 0;
-  int since_best_ = 0, grown_ = 0;
+  int since_best_ = 0, grown_ = 0, raises_ = 0;
   double delta_ = 0, least_delta_ = 0, best_delta_ = 0;
   bool rounds_ = false;  // there are rows that delta may matter to
 };
@@ -72,9 +71,12 @@ void InteriorPoint::adapt_delta(double rounding) {
   if (rounding < kLittleRounding) delta_ = std::max(0.1 * delta_, least_delta_);
 }
 
-void InteriorPoint::raise_delta() {
+// False when it was raised often enough.
+bool InteriorPoint::raise_delta() {
+  if (raises_++ == kRaises) return false;
   least_delta_ *= 10;
   delta_ = std::max(10 * best_delta_, least_delta_);
+  return true;
 }
 
 void InteriorPoint::step(SolveState& state, double error) {
@@ -118,7 +120,7 @@ InteriorPoint::Progress InteriorPoint::watch(const SolveState& state, double err
 }
 
 void InteriorPoint::begin(SolveState& state) {
-  const double least = least_relative_compliance(*state.step);
+  const double least = state.step->least_relative_compliance();
   polish_below_ = 0;
   for (const FirstPolish& first : kFirstPolish) {
     if (polish_below_ == 0 && least >= first.compliance) {
@@ -130,22 +132,22 @@ void InteriorPoint::begin(SolveState& state) {
   least_delta_ = kLeastDelta;
   rounds_ = least < kMostDelta;
   best_error_ = std::numeric_limits<double>::infinity();
-  since_best_ = grown_ = 0;
+  since_best_ = grown_ = raises_ = 0;
   iterate_.start(state);
 }
 
 bool InteriorPoint::run(SolveState& state) {
   begin(state);
   const double target = state.options.target_m_per_s * state.step->velocity_scale();
-  for (int k = 0, raises = 0; k < kMostIterations; ++k) {
+  for (int k = 0; k < kMostIterations; ++k) {
     double error = iterate_.error(state);
     const Progress progress = watch(state, error);
-    if (progress != Progress::good) {
+    if (progress == Progress::finished) break;
+    if (progress == Progress::rounding) {
+      if (!raise_delta()) break;
       iterate_.restore(state);
       error = best_error_;
       since_best_ = grown_ = 0;
-      if (progress == Progress::finished || raises++ == kRaises) break;
-      raise_delta();
     }
     if (error <= polish_below_) {
       if (polish(state)) return true;
@@ -155,9 +157,7 @@ bool InteriorPoint::run(SolveState& state) {
     ++state.summary->iterations;
     if (iterate_.factor(state, delta_)) {
       step(state, error);
-    } else if (raises++ < kRaises) {
-      raise_delta();
-    } else {
+    } else if (!raise_delta()) {
       break;
     }
   }

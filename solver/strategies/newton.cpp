@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "solver/gauss_seidel.h"
-#include "solver/proximal_step.h"
 #include "solver/strategies/strategy.h"
 
 namespace cleave {
@@ -27,7 +26,7 @@ constexpr double kLeastCompliance = 1e-15;  // of d_r
 class Newton : public Strategy {
  public:
   bool run(SolveState& state) override {
-    if (least_relative_compliance(*state.step) < kLeastCompliance) return false;  // lambda(v) divides by it
+    if (state.step->least_relative_compliance() < kLeastCompliance) return false;  // lambda(v) divides by it
     {
       StageTimer timer(state.tasks.clock(), Stage::predict);
       gauss_seidel_sweeps(*state.step, state.options.sweeps, state.impulse, state.velocity);

@@ -102,18 +102,13 @@ class ReproduceTest(StandInCase):
             self.assertEqual((len(self.calls()), result.stdout), (1, ""))
 
     def test_bad_options_are_one_line_before_anything_runs(self):
-        for arguments, words in ((["--steps", "0"], "--steps is '0'"), (["--steps", "ten"], "whole number"),
+        self.check_refused((["--steps", "0"], "--steps is '0'"), (["--steps", "ten"], "whole number"),
                                  (["--threads", "-1"], "--threads is '-1'"), (["--seed",
                                                                                "x"], "--seed is 'x'"),
                                  (["--scene", "rocks"], "unknown scene 'rocks'; choose from chain_drop"),
                                  (["--scene",
                                    ""], "--scene needs a value"), (["--steps"], "--steps needs a value"),
-                                 (["--fast"], "unknown option '--fast'"), (["rock_pile"], "'rock_pile'")):
-            with self.subTest(arguments):
-                result = self.run_it(*arguments, code=1)
-                self.assertIn(words, result.stderr)
-                self.assertEqual(len(result.stderr.splitlines()), 1)
-        self.assertEqual(self.calls(), [])
+                                 (["--fast"], "unknown option '--fast'"), (["rock_pile"], "'rock_pile'"))
         self.assertFalse((self.directory / "out").exists())
 
     def test_a_program_that_cannot_be_run(self):

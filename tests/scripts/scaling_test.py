@@ -62,16 +62,11 @@ class ScalingTest(StandInCase):
             self.assertEqual(len(self.calls()), calls)
 
     def test_bad_options_are_one_line_before_anything_runs(self):
-        for arguments, words in ((["--sizes", "50,many"], "--sizes is 'many'"),
+        self.check_refused((["--sizes", "50,many"], "--sizes is 'many'"),
                                  (["--sizes",
                                    ""], "--sizes needs a value"), (["--steps", "5", "--measure-every",
                                                                     "6"], "--measure-every is 6"),
-                                 (["--seed", "x"], "--seed is 'x'"), (["--fast"], "unknown option '--fast'")):
-            with self.subTest(arguments):
-                result = self.run_it(*arguments, code=1)
-                self.assertIn(words, result.stderr)
-                self.assertEqual(len(result.stderr.splitlines()), 1)
-        self.assertEqual(self.calls(), [])
+                                 (["--seed", "x"], "--seed is 'x'"), (["--fast"], "unknown option '--fast'"))
 
 
 if __name__ == "__main__":

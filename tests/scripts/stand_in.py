@@ -30,6 +30,15 @@ class StandInCase(unittest.TestCase):
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return result
 
+    def check_refused(self, *cases):
+        """Each case: (arguments, words). One line with these words, and nothing was run."""
+        for arguments, words in cases:
+            with self.subTest(arguments):
+                result = self.run_it(*arguments, code=1)
+                self.assertIn(words, result.stderr)
+                self.assertEqual(len(result.stderr.splitlines()), 1)
+        self.assertEqual(self.calls(), [])
+
     def calls(self):
         lines = self.log.read_text().splitlines()
         self.log.write_text("")
