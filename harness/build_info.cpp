@@ -1,7 +1,6 @@
 #include "harness/build_info.h"
 
 #include <camd.h>
-#include <cblas.h>
 #include <hdf5.h>
 #include <ode/ode.h>
 #include <omp.h>
@@ -60,7 +59,6 @@ std::vector<std::pair<std::string, std::string>> library_versions() {
       {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"suitesparse", dotted(SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION, SUITESPARSE_SUBSUB_VERSION)},
       {"camd", dotted(CAMD_MAIN_VERSION, CAMD_SUB_VERSION, CAMD_SUBSUB_VERSION)},
-      {"openblas", openblas_get_config()},
       {"hdf5", dotted(static_cast<int>(hdf5[0]), static_cast<int>(hdf5[1]), static_cast<int>(hdf5[2]))},
       {"openmp", std::to_string(_OPENMP)},
       {"cli11", CLI11_VERSION}};
@@ -75,7 +73,6 @@ MachineInfo machine_info() {
   if (::getloadavg(info.load_average.data(), 3) != 3)
     info.load_average.fill(std::numeric_limits<double>::quiet_NaN());
   info.omp_threads = omp_get_max_threads();
-  info.blas_threads = openblas_get_num_threads();
   return info;
 }
 

@@ -27,7 +27,6 @@ struct MachineInfo {
   int cores = 0;                         // logical ones that this process may use
   std::array<double, 3> load_average{};  // over 1, 5 and 15 minutes; NaN where the system does not say
   int omp_threads = 0;
-  int blas_threads = 0;
 };
 MachineInfo machine_info();
 

@@ -1,7 +1,5 @@
 // The program: finds the command, parses its options, turns every error into one line on stderr and an exit
 // code.
-#include <cblas.h>
-
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
@@ -73,7 +71,6 @@ int run_program(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  openblas_set_num_threads(1);  // parallelism is OpenMP's alone
   const std::string command = argc > 1 && argv[1][0] != '-' ? std::string(" ") + argv[1] : "";
   try {
     return run_program(argc, argv);

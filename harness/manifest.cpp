@@ -51,7 +51,6 @@ void add_machine(JsonWriter& json, const MachineInfo& machine) {
   for (const double load : machine.load_average) json.value(load);
   json.end_array();
   json.field("omp_threads", machine.omp_threads);
-  json.field("blas_threads", machine.blas_threads);
   json.end_object();
 }
 

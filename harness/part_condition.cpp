@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "solver/interface_split.h"
+#include "solver/linear/eigen_blocking.h"
 
 namespace cleave {
 namespace {
@@ -61,6 +62,7 @@ double condition(const PreparedStep& step, const PartRows& part, std::span<const
 }  // namespace
 
 double largest_part_condition(const StepProblem& problem, std::span<const int> part_of_body) {
+  fix_eigen_blocking();
   PreparedStep step;
   step.prepare(problem);
   InterfaceSplit split;

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
-#include "solver/dense_block.h"
+#include "solver/linear/dense_block.h"
+#include "solver/linear/small_cholesky.h"
 
 namespace cleave {
 namespace {
@@ -99,7 +100,7 @@ bool BlockCholesky::factor_panel(const Supernode& s) {
     double* diagonal = panel + 6 * k + 6L * k * ld;
     subtract_product(ld - 6 * k, 6 * k, panel + 6 * k, ld, panel + 6 * k, ld, diagonal, ld);
     double inverse[36];
-    if (!invert_cholesky(diagonal, ld, inverse)) return false;
+    if (!invert_cholesky<6>(diagonal, ld, inverse, 6)) return false;
     multiply_by_transpose(ld - 6 * k - 6, inverse, 6, diagonal + 6, ld);
     for (int c = 0; c < 6; ++c) std::copy(inverse + 6 * c, inverse + 6 * c + 6, diagonal + c * ld);
   }
@@ -141,7 +142,9 @@ void BlockCholesky::forward(int stage, double* x, double* carry, std::vector<dou
     subtract_matrix_vector(below, 6 * s.width, block + 6 * s.width, ld, own, scratch.data());
     for (int k = 0; k < s.rows_below(); ++k) {
       const int position = symbolic_.rows()[s.first_row + s.width + k];
-      double* into = (position >= last_stage_begin ? carry : x) + 6 * position;
+      double* into = position < last_stage_begin
+                         ? x + 6 * position
+                         : carry + 6 * symbolic_.late_index()[s.first_row + s.width + k];
       for (int c = 0; c < 6; ++c) into[c] += scratch[6 * k + c];
     }
   }

@@ -42,8 +42,8 @@ class BlockCholesky {
   void solve(std::span<double> x);
 
   // The same in parts, for stages that run in parallel; x is in position order, 6 doubles each. Contributions
-  // of a stage to positions of the last stage are added to `carry` (same layout as x) instead of x when carry
-  // is given.
+  // of a stage to positions of the last stage are added to `carry` (6 doubles for each of
+  // symbolic().late_positions(stage)) instead of x when carry is given.
   void forward(int stage, double* x, double* carry, std::vector<double>& scratch) const;
   void backward(int stage, double* x, std::vector<double>& scratch) const;
   void to_positions(std::span<const double> by_node, std::vector<double>& by_position) const;

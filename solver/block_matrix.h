@@ -48,6 +48,8 @@ class BlockMatrix {
   };
 
   void number(const PreparedStep& step);
+  void sort_by_stage(std::span<const int> stage_of_item, std::vector<int>& first,
+                     std::vector<int>& items) const;
   void list_edges(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
   void place_groups(const PreparedStep& step, std::span<const int> local_of_body,
                     std::span<const int> groups);
@@ -55,11 +57,13 @@ class BlockMatrix {
   const PreparedStep* step_ = nullptr;
   BlockCholesky cholesky_;
   std::vector<int> bodies_, stage_of_local_;
-  std::vector<int> identity_;     // 0, 1, ...: at least as many as bodies and as groups
-  std::vector<Entry> entries_;    // sorted by stage of assembly
-  std::vector<int> entry_first_;  // (stages + 1)
+  std::vector<int> stage_local_first_, stage_locals_;  // places in bodies_ by stage
+  std::vector<int> identity_;                          // 0, 1, ...: at least as many as bodies and as groups
+  std::vector<Entry> entries_;                         // sorted by stage of assembly
+  std::vector<int> entry_first_;                       // (stages + 1)
   std::vector<int> late_entries_;
-  std::vector<double> late_gram_;  // (late entries, 12, 12)
+  std::vector<int> group_stage_, group_order_;  // scratch: stage of assembly of the groups, and by it
+  std::vector<double> late_gram_;               // (late entries, 12, 12)
   std::vector<char> late_any_;
   std::vector<std::pair<int, int>> edges_;
 };

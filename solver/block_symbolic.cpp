@@ -30,6 +30,7 @@ void BlockSymbolic::analyze(int node_count, std::span<const std::pair<int, int>>
   find_structures();
   find_supernodes(stage_of_node, stage_count);
   list_rows();
+  list_late_rows();
   place_storage();
 }
 
@@ -237,6 +238,36 @@ void BlockSymbolic::list_rows() {
           std::min(supernodes_[i].first_descendant, supernodes_[child].first_descendant);
     }
   }
+}
+
+// Early stages leave their contributions to the last one in arrays of just the positions they reach, so that
+// the cost of a stage follows its own size.
+void BlockSymbolic::list_late_rows() {
+  const int stages = stage_count(), begin = last_stage_position();
+  late_first_.assign(stages + 1, 0);
+  late_positions_.clear();
+  late_index_.assign(rows_.size(), -1);
+  mark_.assign(node_count_, -1);
+  for (int stage = 0; stage + 1 < stages; ++stage) {
+    const int first = late_first_[stage] = static_cast<int>(late_positions_.size());
+    const auto for_late_rows = [&](auto visit) {
+      for (int i = stage_first_[stage]; i < stage_first_[stage + 1]; ++i) {
+        const Supernode& s = supernodes_[i];
+        for (int k = s.first_row + s.width; k < s.first_row + s.row_count; ++k) {
+          if (rows_[k] >= begin) visit(k);
+        }
+      }
+    };
+    for_late_rows([&](int k) {
+      if (mark_[rows_[k]] >= first) return;
+      mark_[rows_[k]] = first;
+      late_positions_.push_back(rows_[k]);
+    });
+    std::sort(late_positions_.begin() + first, late_positions_.end());
+    for (int k = first; k < static_cast<int>(late_positions_.size()); ++k) mark_[late_positions_[k]] = k;
+    for_late_rows([&](int k) { late_index_[k] = mark_[rows_[k]] - first; });
+  }
+  late_first_[stages - 1] = late_first_[stages] = static_cast<int>(late_positions_.size());
 }
 
 // Update matrices live on two stacks per stage, by parity of the depth in the tree: when a supernode is

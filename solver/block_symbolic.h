@@ -57,6 +57,13 @@ class BlockSymbolic {
     const int first = stage_first_[stage_first_.size() - 2];
     return first == static_cast<int>(supernodes_.size()) ? node_count_ : supernodes_[first].first_position;
   }
+  // Positions of the last stage that supernodes of an earlier one have rows at, ascending; and for each entry
+  // of rows() there, its index among those of its stage.
+  std::span<const int> late_positions(int stage) const {
+    return std::span(late_positions_)
+        .subspan(late_first_[stage], late_first_[stage + 1] - late_first_[stage]);
+  }
+  std::span<const int> late_index() const { return late_index_; }
   int stage_count() const { return static_cast<int>(stage_first_.size()) - 1; }
 
   long factor_size() const { return factor_size_; }  // doubles of all panels
@@ -73,6 +80,7 @@ class BlockSymbolic {
   void find_structures();
   void find_supernodes(std::span<const int> stage_of_node, int stage_count);
   void list_rows();
+  void list_late_rows();
   void place_storage();
 
   int node_count_ = 0;
@@ -83,6 +91,7 @@ class BlockSymbolic {
   std::vector<Supernode> supernodes_;
   std::vector<int> supernode_at_position_;
   std::vector<int> rows_, row_in_parent_;
+  std::vector<int> late_first_, late_positions_, late_index_;
   std::vector<int> child_first_, children_, stage_first_;
   std::vector<double> stage_flops_;
   long factor_size_ = 0, update_size_ = 0;

@@ -4,13 +4,14 @@ namespace cleave {
 
 void start_threads(int threads) {
   if (threads <= 1) return;
-  constexpr std::chrono::milliseconds kSpin{100};
-#pragma omp parallel num_threads(threads)
-  {
-    const auto end = StageClock::Clock::now() + kSpin;
+  constexpr std::chrono::milliseconds kBusy{100};
+  const auto end = StageClock::Clock::now() + kBusy;
+  const auto spin = [&](int) {
     while (StageClock::Clock::now() < end) {
     }
-  }
+  };
+  StageClock clock;
+  ParallelTasks(clock, threads).run(Stage::analyze, threads, spin);
 }
 
 }  // namespace cleave

@@ -1,48 +1,60 @@
-// Runs independent tasks 0..count-1 of one stage on the given number of threads and reports wall and task
-// times.
+// Runs the tasks 0..count-1 of one stage of a solve on the solver's threads and reports their times.
 //
-// Tasks write only to their own slot, so results do not depend on the number of threads.
+// Tasks write only to their own slot, so results do not depend on the number of threads. Times of single
+// tasks are taken on one thread only: with more, they would contain each other's memory traffic and whatever
+// else runs on the machine.
 #pragma once
 
-#include <omp.h>
-
+#include <chrono>
 #include <vector>
 
 #include "solver/stage_clock.h"
+#include "solver/worker_team.h"
 
 namespace cleave {
 
-// Makes the threads and keeps them busy for a tenth of a second, in which the scheduler spreads them over the
-// cores. Without it the first solve of a process took 30 ms for 0.3: all its threads ran on one core.
+// Keeps all threads busy for a tenth of a second, in which the scheduler spreads them over the cores. Without
+// it the first solve of a process took 30 ms for 0.3: all its threads ran on one core.
 void start_threads(int threads);
 
 class ParallelTasks {
  public:
-  ParallelTasks(StageClock& clock, int threads) : clock_(clock), threads_(threads) {}
+  ParallelTasks(StageClock& clock, int threads) : clock_(clock), team_(WorkerTeam::shared(threads)) {}
 
+  // Tasks are started in ascending order; one may wait for an earlier one.
   template <class Task>
   void run(Stage stage, int count, const Task& task) {
     StageTimer timer(clock_, stage);
-    task_ms_.resize(count);
-    const auto timed = [&](int i) {
-      const auto begin = StageClock::Clock::now();
-      task(i);
-      task_ms_[i] = std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin).count();
-    };
-    if (threads_ == 1 || count <= 1) {
-      for (int i = 0; i < count; ++i) timed(i);
+    if (team_.threads() == 1) {
+      run_timed(count, task);
+    } else if (count == 1) {
+      task(0);
     } else {
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads_)
-      for (int i = 0; i < count; ++i) timed(i);
+      team_.run(
+          count, [](void* context, int index) { (*static_cast<const Task*>(context))(index); },
+          const_cast<void*>(static_cast<const void*>(&task)));
+    }
+  }
+
+  StageClock& clock() { return clock_; }
+  int threads() const { return team_.threads(); }
+
+ private:
+  template <class Task>
+  void run_timed(int count, const Task& task) {
+    task_ms_.resize(count);
+    auto begin = StageClock::Clock::now();
+    for (int i = 0; i < count; ++i) {
+      task(i);
+      const auto end = StageClock::Clock::now();
+      task_ms_[i] = std::chrono::duration<double, std::milli>(end - begin).count();
+      begin = end;
     }
     clock_.add_tasks(task_ms_);
   }
 
-  StageClock& clock() { return clock_; }
-
- private:
   StageClock& clock_;
-  int threads_;
+  WorkerTeam& team_;
   std::vector<double> task_ms_;
 };
 

@@ -1,7 +1,5 @@
 #include "solver/step_solver.h"
 
-#include <cblas.h>
-
 #include <cassert>
 #include <stdexcept>
 
@@ -35,7 +33,6 @@ SolveSummary StepSolver::solve(const StepProblem& problem, std::span<const int> 
 }
 
 std::unique_ptr<StepSolver> make_step_solver(std::string_view name, const SolveOptions& options) {
-  openblas_set_num_threads(1);  // parallelism is ours: one task, one thread
   for (const SolverRow& row : solver_table()) {
     if (row.entry.name != name) continue;
     return row.make != nullptr ? row.make(options) : make_direct_solver(row.strategy, row.kernel, options);

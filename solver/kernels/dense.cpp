@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 
 #include "solver/kernels/kernel.h"
+#include "solver/linear/eigen_blocking.h"
 
 namespace cleave {
 namespace {
@@ -74,6 +75,9 @@ class DenseKernel : public Kernel {
 
 }  // namespace
 
-std::unique_ptr<Kernel> make_dense_kernel() { return std::make_unique<DenseKernel>(); }
+std::unique_ptr<Kernel> make_dense_kernel() {
+  fix_eigen_blocking();
+  return std::make_unique<DenseKernel>();
+}
 
 }  // namespace cleave

@@ -47,7 +47,7 @@ class SchurBodiesKernel : public Kernel {
   std::vector<std::pair<int, int>> cut_edges_;
   std::vector<char> factored_;
   std::vector<double> weighted_, by_node_, x_;
-  std::vector<std::vector<double>> carry_, scratch_;  // one per part
+  std::vector<std::vector<double>> carry_, scratch_;  // one per part, of its own size
 };
 
 // Rows and cut edges of a step.
@@ -108,7 +108,6 @@ bool SchurBodiesKernel::factor(std::span<const double> d, ParallelTasks& tasks) 
 void SchurBodiesKernel::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
                               std::span<double> dlambda, ParallelTasks& tasks) {
   const BlockCholesky& cholesky = matrix_.cholesky();
-  const int interface_begin = cholesky.symbolic().last_stage_position();
   {
     StageTimer timer(tasks.clock(), Stage::solve);
     for (int r = 0; r < step_->row_count(); ++r) weighted_[r] = d_[r] * f_r[r];
@@ -117,13 +116,16 @@ void SchurBodiesKernel::solve(std::span<const double> f_v, std::span<const doubl
     cholesky.to_positions(by_node_, x_);
   }
   tasks.run(Stage::solve, parts_, [&](int part) {
-    carry_[part].assign(x_.size(), 0.0);
+    carry_[part].assign(6 * cholesky.symbolic().late_positions(part).size(), 0.0);
     cholesky.forward(part, x_.data(), carry_[part].data(), scratch_[part]);
   });
   {
     StageTimer timer(tasks.clock(), Stage::solve);
     for (int part = 0; part < parts_; ++part) {
-      for (std::size_t k = 6 * interface_begin; k < x_.size(); ++k) x_[k] += carry_[part][k];
+      const double* carried = carry_[part].data();
+      for (int position : cholesky.symbolic().late_positions(part)) {
+        for (int c = 0; c < 6; ++c) x_[6 * position + c] += *carried++;
+      }
     }
     cholesky.forward(parts_, x_.data(), nullptr, scratch_[0]);
     cholesky.backward(parts_, x_.data(), scratch_[0]);

@@ -14,10 +14,11 @@
 #include <vector>
 
 #include "solver/block_matrix.h"
-#include "solver/dense_block.h"
-#include "solver/dense_cholesky.h"
 #include "solver/interface_split.h"
 #include "solver/kernels/kernel.h"
+#include "solver/linear/dense_block.h"
+#include "solver/linear/dense_cholesky.h"
+#include "solver/linear/dense_panel.h"
 
 namespace cleave {
 namespace {
@@ -59,7 +60,7 @@ class SchurRowsKernel : public Kernel {
   void number_active_rows();
   void choose_active(int part);
   void form_complement(int part);
-  void gather_column(int column, double* s) const;
+  void gather_panel(int p);
   void reduce(int part, std::span<const double> f_v, std::span<const double> f_r);
   void expand(int part, std::span<const double> f_r, std::span<double> dv, std::span<double> dlambda);
 
@@ -67,10 +68,10 @@ class SchurRowsKernel : public Kernel {
   std::span<const double> d_;
   InterfaceSplit split_;
   std::vector<Part> parts_;
-  std::vector<int> interface_row_;                  // (cut rows) row of S, -1 where D = 0
-  std::vector<int> active_rows_;                    // (size of S) problem row
-  std::vector<std::array<int, 2>> column_part_;     // (size of S) the two parts of a column,
-  std::vector<std::array<int, 2>> column_in_part_;  // and its place among their right-hand sides
+  std::vector<int> interface_row_;               // (cut rows) row of S, -1 where D = 0
+  std::vector<int> active_rows_;                 // (size of S) problem row
+  std::vector<std::array<int, 2>> row_part_;     // (size of S) the two parts of a row,
+  std::vector<std::array<int, 2>> row_in_part_;  // and its place among their right-hand sides
   DenseCholesky interface_;
   std::vector<double> lambda_;
 };
@@ -132,8 +133,8 @@ void SchurRowsKernel::number_active_rows() {
     interface_row_[c] = active ? static_cast<int>(active_rows_.size()) : -1;
     if (active) active_rows_.push_back(split_.cut_rows[c]);
   }
-  column_part_.assign(active_rows_.size(), {-1, -1});
-  column_in_part_.assign(active_rows_.size(), {-1, -1});
+  row_part_.assign(active_rows_.size(), {-1, -1});
+  row_in_part_.assign(active_rows_.size(), {-1, -1});
 }
 
 // Right-hand sides sorted by supernode: those that reach supernode s come from its subtree, a contiguous
@@ -191,20 +192,23 @@ void SchurRowsKernel::form_complement(int i) {
   }
 }
 
-// One column of S from the two parts that meet at its row, in the order of the parts.
-void SchurRowsKernel::gather_column(int column, double* s) const {
-  const int size = interface_.size();
-  std::fill(s + column, s + size, 0.0);
-  for (int side = 0; side < 2; ++side) {
-    const Part& part = parts_[column_part_[column][side]];
-    const int k = column_in_part_[column][side];
-    for (std::size_t l = 0; l < part.interface_row.size(); ++l) {
-      const int row = part.interface_row[l];
-      const long low = std::max<long>(k, l), high = std::min<long>(k, l);
-      if (row >= column) s[row] -= part.minus_gram[low + high * part.ld];
+// One row panel of S: each row from the two parts that meet at it, in the order of the parts.
+void SchurRowsKernel::gather_panel(int p) {
+  double* entries = interface_.begin_panel(p);
+  const int first = kPanelRows * p, end = std::min(interface_.size(), first + kPanelRows);
+  for (int row = first; row < end; ++row) {
+    double* s = entries + (row - first);
+    for (int side = 0; side < 2; ++side) {
+      const Part& part = parts_[row_part_[row][side]];
+      const int k = row_in_part_[row][side];
+      for (std::size_t l = 0; l < part.interface_row.size(); ++l) {
+        const int column = part.interface_row[l];
+        const long low = std::max<long>(k, l), high = std::min<long>(k, l);
+        if (column <= row) s[static_cast<long>(kPanelRows) * column] -= part.minus_gram[low + high * part.ld];
+      }
     }
+    s[static_cast<long>(kPanelRows) * row] += 1 / d_[active_rows_[row]];
   }
-  s[column] += 1 / d_[active_rows_[column]];
 }
 
 bool SchurRowsKernel::factor(std::span<const double> d, ParallelTasks& tasks) {
@@ -223,24 +227,18 @@ bool SchurRowsKernel::factor(std::span<const double> d, ParallelTasks& tasks) {
     choose_active(i);
     form_complement(i);
   });
-  double* s = nullptr;
   {
     StageTimer timer(tasks.clock(), Stage::form_interface);
     for (int i = 0; i < count; ++i) {
       for (std::size_t k = 0; k < parts_[i].interface_row.size(); ++k) {
-        const int column = parts_[i].interface_row[k], side = column_part_[column][0] < 0 ? 0 : 1;
-        column_part_[column][side] = i;
-        column_in_part_[column][side] = static_cast<int>(k);
+        const int row = parts_[i].interface_row[k], side = row_part_[row][0] < 0 ? 0 : 1;
+        row_part_[row][side] = i;
+        row_in_part_[row][side] = static_cast<int>(k);
       }
     }
-    s = interface_.resize(static_cast<int>(active_rows_.size()));
+    interface_.resize(static_cast<int>(active_rows_.size()));
   }
-  constexpr int kColumnsPerTask = 64;
-  const int size = interface_.size();
-  tasks.run(Stage::form_interface, (size + kColumnsPerTask - 1) / kColumnsPerTask, [&](int t) {
-    const int end = std::min(size, (t + 1) * kColumnsPerTask);
-    for (int c = t * kColumnsPerTask; c < end; ++c) gather_column(c, s + static_cast<long>(c) * size);
-  });
+  tasks.run(Stage::form_interface, interface_.panel_count(), [&](int p) { gather_panel(p); });
   return interface_.factor(tasks);
 }
 

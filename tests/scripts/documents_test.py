@@ -16,7 +16,7 @@ USED_BY = {
     "libode-dev": ("CMakeLists.txt", "ode"),
     "libeigen3-dev": ("CMakeLists.txt", "Eigen3"),
     "libsuitesparse-dev": ("CMakeLists.txt", "cholmod", "camd", "amd"),
-    "libopenblas-dev": ("CMakeLists.txt", "openblas"),
+    "libopenblas-dev": ("tests/CMakeLists.txt", "openblas"),
     "libcli11-dev": ("CMakeLists.txt", "CLI11"),
     "libhdf5-dev": ("CMakeLists.txt", "HDF5"),
     "libgtest-dev": ("tests/CMakeLists.txt", "GTest"),

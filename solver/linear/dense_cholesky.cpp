@@ -1,0 +1,206 @@
+#include "solver/linear/dense_cholesky.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/linear/dense_panel.h"
+#include "solver/linear/small_cholesky.h"
+
+namespace cleave {
+namespace {
+
+// Panels of a block. The bytes of the factor depend on it, so it is the same on every machine.
+constexpr int kBlockPanels = 5;
+constexpr int kBlock = kBlockPanels * kPanelRows;
+constexpr int kBlockGroups = kBlock / kPanelColumns;  // groups of eight rows or columns
+constexpr int kPanelGroups = kPanelRows / kPanelColumns;
+constexpr long kGroupEntries = kPanelRows * kPanelColumns;  // of eight columns of a panel
+
+// x (24) <- L^-1 x on the diagonal of a panel, a group of eight rows after the other.
+void solve_diagonal(const double* diagonal, double* x) {
+  for (int first = 0; first < kPanelRows; first += kPanelColumns) {
+    double y[kPanelColumns] = {};
+    for (int c = 0; c < kPanelColumns; ++c) {
+      const double* column = diagonal + kPanelRows * (first + c) + first;
+      for (int r = c; r < kPanelColumns; ++r) y[r] = std::fma(column[r], x[first + c], y[r]);
+    }
+    std::copy(y, y + kPanelColumns, x + first);
+    for (int c = first; c < first + kPanelColumns; ++c) {
+      const double* column = diagonal + kPanelRows * c;
+      for (int r = first + kPanelColumns; r < kPanelRows; ++r) x[r] = std::fma(-column[r], x[c], x[r]);
+    }
+  }
+}
+
+// x (24) <- L^-T x
+void solve_diagonal_transpose(const double* diagonal, double* x) {
+  for (int first = kPanelRows - kPanelColumns; first >= 0; first -= kPanelColumns) {
+    for (int c = first; c < first + kPanelColumns; ++c) {
+      const double* column = diagonal + kPanelRows * c;
+      for (int r = first + kPanelColumns; r < kPanelRows; ++r) x[c] = std::fma(-column[r], x[r], x[c]);
+    }
+    double y[kPanelColumns] = {};
+    for (int c = 0; c < kPanelColumns; ++c) {
+      const double* column = diagonal + kPanelRows * (first + c) + first;
+      for (int r = c; r < kPanelColumns; ++r) y[c] = std::fma(column[r], x[first + r], y[c]);
+    }
+    std::copy(y, y + kPanelColumns, x + first);
+  }
+}
+
+}  // namespace
+
+void DenseCholesky::resize(int size) {
+  size_ = size;
+  panels_ = (size + kPanelRows - 1) / kPanelRows;
+  blocks_ = (panels_ + kBlockPanels - 1) / kBlockPanels;
+  if (offset(panels_) > capacity_) {
+    capacity_ = offset(panels_);
+    entries_.reset(new (std::align_val_t(64)) double[capacity_]);
+  }
+}
+
+double* DenseCholesky::begin_panel(int p) {
+  double* entries = panel(p);
+  std::fill(entries, entries + (offset(p + 1) - offset(p)), 0.0);
+  for (int r = std::max(0, size_ - kPanelRows * p); r < kPanelRows; ++r) {
+    entries[r + kPanelRows * (kPanelRows * p + r)] = 1;
+  }
+  return entries;
+}
+
+int DenseCholesky::panels_until(int block) const { return std::min(panels_, block * kBlockPanels); }
+
+// Eight columns at a time; each is updated by those before it in the block.
+bool DenseCholesky::factor_diagonal(int step) {
+  const int first = step * kBlockPanels, last = panels_until(step + 1);
+  const long start = static_cast<long>(kPanelRows) * step * kBlock;
+  for (int g = 0; g < (last - first) * kPanelGroups; ++g) {
+    const int own = first + g / kPanelGroups, own_row = g % kPanelGroups * kPanelColumns;
+    const long columns = start + kGroupEntries * g;
+    const double* right = panel(own) + start + own_row;
+    for (int p = own; p < last; ++p) {
+      subtract_panel_product(kPanelColumns * g, panel(p) + start, right, panel(p) + columns);
+    }
+    double* diagonal = panel(own) + columns + own_row;
+    if (!invert_cholesky<kPanelColumns>(diagonal, kPanelRows, diagonal, kPanelRows)) return false;
+    multiply_panel_by_transpose(diagonal, own_row + kPanelColumns, panel(own) + columns);
+    for (int p = own + 1; p < last; ++p) multiply_panel_by_transpose(diagonal, 0, panel(p) + columns);
+  }
+  return true;
+}
+
+void DenseCholesky::solve_below(int step, int row) {
+  const long start = static_cast<long>(kPanelRows) * step * kBlock;
+  for (int p = row * kBlockPanels; p < panels_until(row + 1); ++p) {
+    for (int g = 0; g < kBlockGroups; ++g) {
+      const double* right = panel(step * kBlockPanels + g / kPanelGroups) + g % kPanelGroups * kPanelColumns;
+      const long columns = start + kGroupEntries * g;
+      subtract_panel_product(kPanelColumns * g, panel(p) + start, right + start, panel(p) + columns);
+      multiply_panel_by_transpose(right + columns, 0, panel(p) + columns);
+    }
+  }
+}
+
+void DenseCholesky::update(int step, int row, int column) {
+  const long start = static_cast<long>(kPanelRows) * step * kBlock;
+  for (int p = row * kBlockPanels; p < panels_until(row + 1); ++p) {
+    const int end = std::min((column + 1) * kBlockGroups, (p + 1) * kPanelGroups);
+    for (int g = column * kBlockGroups; g < end; ++g) {
+      const double* right = panel(g / kPanelGroups) + start + g % kPanelGroups * kPanelColumns;
+      subtract_panel_product(kBlock, panel(p) + start, right, panel(p) + kGroupEntries * g);
+    }
+  }
+}
+
+// The operations in an order in which each comes after all that it needs. The block that the next step begins
+// with comes first in every step, and its factorisation next, so that it is long done when the solves below
+// it, last in the step, are reached.
+void DenseCholesky::list_operations() {
+  if (listed_blocks_ == blocks_) return;
+  listed_blocks_ = blocks_;
+  operations_.clear();
+  for (int step = -1; step < blocks_ - 1; ++step) {
+    const int next = step + 1;
+    if (step >= 0) operations_.push_back({step, next, next});
+    operations_.push_back({next, next, next});
+    for (int column = next; column < blocks_ && step >= 0; ++column) {
+      for (int row = std::max(column, next + 1); row < blocks_; ++row)
+        operations_.push_back({step, row, column});
+    }
+    for (int row = next + 1; row < blocks_; ++row) operations_.push_back({next, row, next});
+  }
+  const int triangle = blocks_ * (blocks_ + 1) / 2;
+  if (triangle > done_capacity_) {
+    done_capacity_ = triangle;
+    done_ = std::make_unique<std::atomic<int>[]>(triangle);
+  }
+}
+
+// On several threads: the operations in the order of the list, each when what it needs is there. A block of
+// column c has seen c updates before it is final with its own solve or factorisation.
+bool DenseCholesky::factor_with_look_ahead(ParallelTasks& tasks) {
+  list_operations();
+  for (int k = 0; k < blocks_ * (blocks_ + 1) / 2; ++k) done_[k].store(0, std::memory_order_relaxed);
+  std::atomic<bool> positive = true;
+  tasks.run(Stage::factor_interface, static_cast<int>(operations_.size()), [&](int index) {
+    const auto [step, row, column] = operations_[index];
+    const bool is_update = column > step, is_diagonal = row == step;
+    if (!is_diagonal) wait_until(done(is_update ? row : step, step), step + 1);
+    if (is_update) wait_until(done(column, step), step + 1);
+    wait_until(done(row, column), step);
+    if (positive) {
+      if (is_update) {
+        update(step, row, column);
+      } else if (!is_diagonal) {
+        solve_below(step, row);
+      } else if (!factor_diagonal(step)) {
+        positive = false;
+      }
+    }
+    raise(done(row, column));
+  });
+  return positive;
+}
+
+// On one thread: step by step, in sets of independent tasks, whose times the model of more workers is made
+// of.
+bool DenseCholesky::factor_in_steps(ParallelTasks& tasks) {
+  for (int step = 0; step < blocks_; ++step) {
+    {
+      StageTimer timer(tasks.clock(), Stage::factor_interface);
+      if (!factor_diagonal(step)) return false;
+    }
+    const int below = blocks_ - step - 1;
+    tasks.run(Stage::factor_interface, below, [&](int t) { solve_below(step, step + 1 + t); });
+    // Blocks (i, j), step < j <= i, numbered down the columns of the triangle.
+    tasks.run(Stage::factor_interface, below * (below + 1) / 2, [&](int t) {
+      int column = 0;
+      for (int left = below; t >= left; --left) t -= left, ++column;
+      update(step, step + 1 + column + t, step + 1 + column);
+    });
+  }
+  return true;
+}
+
+bool DenseCholesky::factor(ParallelTasks& tasks) {
+  return tasks.threads() == 1 ? factor_in_steps(tasks) : factor_with_look_ahead(tasks);
+}
+
+void DenseCholesky::solve(std::span<double> x) {
+  padded_.assign(static_cast<std::size_t>(kPanelRows) * panels_, 0.0);
+  std::copy(x.begin(), x.end(), padded_.begin());
+  for (int p = 0; p < panels_; ++p) {
+    double* own = padded_.data() + kPanelRows * p;
+    subtract_panel_vector(kPanelRows * p, panel(p), padded_.data(), own);
+    solve_diagonal(panel(p) + kPanelRows * kPanelRows * p, own);
+  }
+  for (int p = panels_ - 1; p >= 0; --p) {
+    double* own = padded_.data() + kPanelRows * p;
+    solve_diagonal_transpose(panel(p) + kPanelRows * kPanelRows * p, own);
+    subtract_panel_transpose(kPanelRows * p, panel(p), own, padded_.data());
+  }
+  std::copy_n(padded_.begin(), size_, x.begin());
+}
+
+}  // namespace cleave

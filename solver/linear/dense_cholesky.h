@@ -1,0 +1,77 @@
+// Cholesky factorisation of a dense symmetric positive definite matrix: the interface system of schur-rows.
+//
+// The lower triangle is stored in row panels (dense_panel.h): panel p holds rows 24 p .. 24 p + 23 and their
+// columns up to the diagonal, so that factor and solves run on it without copies, in half the memory of a
+// square matrix. Rows beyond the size are rows of the identity. In square blocks of kBlock rows, step k
+//
+//     factors the diagonal block            A_kk = L_kk L_kk^T
+//     solves the blocks below it            L_ik = A_ik L_kk^-T
+//     updates what is right of it           A_ij -= L_ik L_jk^T,    k < j <= i
+//
+// (right-looking; Golub and Van Loan, Matrix Computations, section 4.2). On several threads the first column
+// of blocks that a step updates is factored and solved while the others are still being updated
+// (look-ahead; Strazdins 1998). Every block sees the same operations in the same order on any number of
+// threads. The inverse of each 8x8 diagonal block of L is stored in the place of the block.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <span>
+#include <vector>
+
+#include "solver/parallel_tasks.h"
+
+namespace cleave {
+
+class DenseCholesky {
+ public:
+  // A matrix of this size, to be filled panel by panel. Memory only grows.
+  void resize(int size);
+  int size() const { return size_; }
+  int panel_count() const { return panels_; }
+
+  // Sets panel p to zero, rows beyond the size to those of the identity, and returns it: entry (r, c) of the
+  // matrix is at (r - 24 p) + 24 c, c <= r. Panels may be filled by different threads.
+  double* begin_panel(int p);
+
+  bool factor(ParallelTasks& tasks);  // false when a pivot is not positive
+  void solve(std::span<double> x);    // x (size) <- A^-1 x
+
+  // Multiplications and additions of one factorisation, 1e6: the sum of squared column heights.
+  double mflop() const { return size_ * (size_ + 1.0) * (2.0 * size_ + 1) / 6 * 1e-6; }
+
+ private:
+  struct FreeAligned {
+    void operator()(double* p) const { ::operator delete[](p, std::align_val_t(64)); }
+  };
+  double* panel(int p) const { return entries_.get() + offset(p); }
+  static std::size_t offset(int p) { return std::size_t{288} * p * (p + 1); }
+
+  // What a step does to one block. A diagonal block is factored, those below it are solved for, all others
+  // are updated.
+  struct Operation {
+    int step, row, column;
+  };
+  void list_operations();
+  bool factor_in_steps(ParallelTasks& tasks);
+  bool factor_with_look_ahead(ParallelTasks& tasks);
+  std::atomic<int>& done(int row, int column) { return done_[row * (row + 1) / 2 + column]; }
+
+  bool factor_diagonal(int step);
+  void solve_below(int step, int row);
+  void update(int step, int row, int column);
+  int panels_until(int block) const;
+
+  int size_ = 0, panels_ = 0, blocks_ = 0;
+  std::size_t capacity_ = 0;
+  std::unique_ptr<double[], FreeAligned> entries_;
+  std::vector<double> padded_;  // a right-hand side and zeros up to a whole panel
+  std::vector<Operation> operations_;
+  int listed_blocks_ = -1;                    // what operations_ is for
+  std::unique_ptr<std::atomic<int>[]> done_;  // operations that each block of the triangle has seen
+  int done_capacity_ = 0;
+};
+
+}  // namespace cleave

@@ -1,0 +1,20 @@
+#include "solver/linear/dense_tiles.h"
+
+#include <algorithm>
+
+namespace cleave {
+
+extern const DenseTiles kDenseTilesAvx512, kDenseTilesAvx2;
+
+namespace {
+
+constexpr const DenseTiles* kAll[] = {&kDenseTilesAvx512, &kDenseTilesAvx2};
+
+}  // namespace
+
+std::span<const DenseTiles* const> all_dense_tiles() { return kAll; }
+
+const DenseTiles* chosen_dense_tiles =
+    *std::ranges::find_if(kAll, [](const DenseTiles* tiles) { return tiles->is_supported(); });
+
+}  // namespace cleave

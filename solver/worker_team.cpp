@@ -1,0 +1,126 @@
+#include "solver/worker_team.h"
+
+#include <immintrin.h>
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <utility>
+
+namespace cleave {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// How long a thread looks out before it sleeps. Waking one takes some ten microseconds, so gaps shorter than
+// that are best spent awake; longer ones take time from whoever else could use the core.
+constexpr std::chrono::microseconds kLookOut{50};
+
+// Whether `done` came true before a thread has looked for kLookOut.
+template <class Condition>
+bool look_out(Condition done) {
+  constexpr int kLooksPerClock = 32;
+  const auto end = Clock::now() + kLookOut;
+  do {
+    for (int k = 0; k < kLooksPerClock; ++k) {
+      if (done()) return true;
+      _mm_pause();
+    }
+  } while (Clock::now() < end);
+  return false;
+}
+
+constexpr std::uint64_t kTasks = 0xffffffff;  // lower half of open_
+
+}  // namespace
+
+void wait_until(std::atomic<int>& counter, int at_least) {
+  const auto reached = [&] { return counter.load(std::memory_order_acquire) >= at_least; };
+  if (reached() || look_out(reached)) return;
+  for (int seen = counter; seen < at_least; seen = counter) counter.wait(seen);
+}
+
+void raise(std::atomic<int>& counter) {
+  counter.fetch_add(1, std::memory_order_acq_rel);
+  counter.notify_all();
+}
+
+WorkerTeam::WorkerTeam(int threads) : threads_(threads) {
+  if (threads == 1) return;
+  workers_ = std::thread([this] {
+#pragma omp parallel num_threads(threads_ - 1)
+    work();
+  });
+}
+
+WorkerTeam::~WorkerTeam() {
+  if (threads_ == 1) return;
+  stop_ = true;
+  open_.fetch_add(kTasks + 1);  // a stage without tasks, so that sleepers see a change
+  open_.notify_all();
+  workers_.join();
+}
+
+WorkerTeam& WorkerTeam::shared(int threads) {
+  static std::mutex mutex;
+  static std::map<int, std::unique_ptr<WorkerTeam>> teams;
+  const std::scoped_lock lock(mutex);
+  std::unique_ptr<WorkerTeam>& team = teams[threads];
+  if (team == nullptr) team = std::make_unique<WorkerTeam>(threads);
+  return *team;
+}
+
+void WorkerTeam::finish_one() {
+  if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_all();
+}
+
+// Runs the next task that nobody has started; false when there is none.
+bool WorkerTeam::take_one() {
+  std::uint64_t open = open_.load(std::memory_order_acquire);
+  do {
+    if ((open & kTasks) == 0) return false;
+  } while (!open_.compare_exchange_weak(open, open - 1, std::memory_order_acq_rel));
+  const int index = count_ - static_cast<int>(open & kTasks);
+  if (!failed_.load(std::memory_order_acquire)) {
+    try {
+      task_(context_, index);
+    } catch (...) {
+      if (!failed_.exchange(true)) failure_ = std::current_exception();
+    }
+  }
+  finish_one();
+  return true;
+}
+
+void WorkerTeam::work() {
+  while (!stop_) {
+    while (take_one()) {
+    }
+    const std::uint64_t seen = open_.load(std::memory_order_acquire);
+    if ((seen & kTasks) != 0 || stop_) continue;
+    if (look_out([&] { return open_.load(std::memory_order_acquire) != seen; })) continue;
+    open_.wait(seen);
+  }
+}
+
+void WorkerTeam::run(int count, Task task, void* context) {
+  if (count <= 0) return;
+  const std::scoped_lock lock(one_caller_);
+  task_ = task;
+  context_ = context;
+  count_ = count;
+  failed_ = false;
+  unfinished_.store(count, std::memory_order_release);
+  const std::uint64_t stage = (open_.load() & ~kTasks) + kTasks + 1;
+  open_.store(stage + static_cast<std::uint64_t>(count), std::memory_order_release);
+  open_.notify_all();
+  while (take_one()) {
+  }
+  const auto all_done = [&] { return unfinished_.load(std::memory_order_acquire) == 0; };
+  if (!look_out(all_done)) {
+    for (int left = unfinished_; left != 0; left = unfinished_) unfinished_.wait(left);
+  }
+  if (failed_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+}  // namespace cleave

@@ -1,0 +1,162 @@
+// Times the dense Cholesky factorisation of the interface system against what the processor can do and
+// against OpenBLAS. scripts/benchmark_dense tells OpenBLAS the right processor and prints the ratios.
+//
+//   dense_benchmark [Google Benchmark options]
+//
+// Rows (counter gflop_per_s: n^3 / 3 and lower terms over the time):
+//   peak:SET                multiply-adds on registers with that instruction set, one thread
+//   cholesky:SET/ROWS       ours, one thread
+//   openblas/ROWS           dpotrf, one thread
+//   cholesky_2/ROWS         ours, two threads, the widest instruction set
+//   side_by_side/ROWS       two factorisations of ours, one thread each, at the same time; the time of one,
+//   so
+//                           twice gflop_per_s is what the machine can give to two threads
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <atomic>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "solver/linear/dense_cholesky.h"
+#include "solver/linear/dense_panel.h"
+#include "tests/benchmarks/multiply_add_peak.h"
+
+extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+extern "C" void openblas_set_num_threads(int threads);
+
+namespace cleave {
+namespace {
+
+constexpr int kRows[] = {100, 300, 1000, 3000};
+
+// Diagonally dominant, the same in both layouts.
+double entry(int row, int column, int size) {
+  return row == column ? size : 1.0 / (1 + (7 * row + 3 * column) % 11);
+}
+
+void fill(DenseCholesky& cholesky, int size) {
+  cholesky.resize(size);
+  for (int p = 0; p < cholesky.panel_count(); ++p) {
+    double* entries = cholesky.begin_panel(p);
+    for (int row = kPanelRows * p; row < std::min(size, kPanelRows * (p + 1)); ++row) {
+      for (int column = 0; column <= row; ++column) {
+        entries[(row - kPanelRows * p) + kPanelRows * column] = entry(row, column, size);
+      }
+    }
+  }
+}
+
+void count_flops(benchmark::State& state, double mflop) {
+  state.counters["gflop_per_s"] =
+      benchmark::Counter(1e-3 * mflop, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+void time_peak(benchmark::State& state, const DenseTiles& tiles) {
+  constexpr int kRounds = 100000;
+  double flops = 0;
+  for (auto _ : state) flops = run_multiply_adds(tiles.name, kRounds);
+  count_flops(state, 1e-6 * flops);
+}
+
+// Fills and factors, and times the factorisation.
+double factor_seconds(DenseCholesky& cholesky, int size, ParallelTasks& tasks) {
+  fill(cholesky, size);
+  const auto begin = StageClock::Clock::now();
+  if (!cholesky.factor(tasks)) throw std::runtime_error("the matrix is not positive definite");
+  return std::chrono::duration<double>(StageClock::Clock::now() - begin).count();
+}
+
+void time_cholesky(benchmark::State& state, const DenseTiles& tiles, int size, int threads) {
+  const DenseTiles& chosen = dense_tiles();
+  use_dense_tiles(tiles);
+  start_threads(threads);
+  StageClock clock;
+  ParallelTasks tasks(clock, threads);
+  DenseCholesky cholesky;
+  for (auto _ : state) state.SetIterationTime(factor_seconds(cholesky, size, tasks));
+  count_flops(state, cholesky.mflop());
+  use_dense_tiles(chosen);
+}
+
+void time_openblas(benchmark::State& state, int size) {
+  openblas_set_num_threads(1);
+  std::vector<double> a(static_cast<std::size_t>(size) * size);
+  for (auto _ : state) {
+    for (int column = 0; column < size; ++column) {
+      for (int row = column; row < size; ++row)
+        a[row + static_cast<std::size_t>(size) * column] = entry(row, column, size);
+    }
+    int info = 0;
+    const auto begin = StageClock::Clock::now();
+    dpotrf_("L", &size, a.data(), &size, &info);
+    state.SetIterationTime(std::chrono::duration<double>(StageClock::Clock::now() - begin).count());
+  }
+  DenseCholesky same_size;
+  same_size.resize(size);
+  count_flops(state, same_size.mflop());
+}
+
+// The longer of two that begin together.
+void time_side_by_side(benchmark::State& state, int size) {
+  start_threads(2);
+  DenseCholesky cholesky[2];
+  for (auto _ : state) {
+    double seconds[2] = {};
+    for (DenseCholesky& one : cholesky) fill(one, size);
+    std::atomic<int> ready = 0;
+    const auto run = [&](int k) {
+      StageClock clock;
+      ParallelTasks tasks(clock, 1);
+      raise(ready);
+      wait_until(ready, 2);
+      const auto begin = StageClock::Clock::now();
+      if (!cholesky[k].factor(tasks)) throw std::runtime_error("the matrix is not positive definite");
+      seconds[k] = std::chrono::duration<double>(StageClock::Clock::now() - begin).count();
+    };
+    std::thread other(run, 1);
+    run(0);
+    other.join();
+    state.SetIterationTime(std::max(seconds[0], seconds[1]));
+  }
+  count_flops(state, cholesky[0].mflop());
+}
+
+template <class Run>
+void add(const std::string& name, Run run, bool manual = true) {
+  auto* row = benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond);
+  if (manual) row->UseManualTime();
+}
+
+void register_rows() {
+  for (const DenseTiles* tiles : all_dense_tiles()) {
+    if (!tiles->is_supported()) continue;
+    add(
+        std::string("peak:") + tiles->name, [tiles](benchmark::State& state) { time_peak(state, *tiles); },
+        false);
+    for (int size : kRows) {
+      add(std::string("cholesky:") + tiles->name + "/" + std::to_string(size),
+          [tiles, size](benchmark::State& state) { time_cholesky(state, *tiles, size, 1); });
+    }
+  }
+  for (int size : kRows) {
+    const std::string rows = "/" + std::to_string(size);
+    add("openblas" + rows, [size](benchmark::State& state) { time_openblas(state, size); });
+    add("cholesky_2" + rows,
+        [size](benchmark::State& state) { time_cholesky(state, dense_tiles(), size, 2); });
+    add("side_by_side" + rows, [size](benchmark::State& state) { time_side_by_side(state, size); });
+  }
+}
+
+}  // namespace
+}  // namespace cleave
+
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  cleave::register_rows();
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
