@@ -1,0 +1,148 @@
+// Short runs of every scene against rows that are stored in tests/harness/golden: whatever machine this is,
+// the same problems, partitions, solutions and motion, to the last bit.
+//
+// A change that is meant to change them writes the files anew: CLEAVE_WRITE_GOLDEN=1 in the environment of
+// this test. The difference then stands in the commit, for all to see.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "harness/nearest_name.h"
+#include "harness/solver_choices.h"
+#include "tests/harness/run_program.h"
+
+namespace cleave {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+const Arguments kColumns = {"step",
+                            "partitioner",
+                            "refiner",
+                            "solver",
+                            "status",
+                            "rows",
+                            "parts",
+                            "cut_pairs",
+                            "interface_rows",
+                            "iterations",
+                            "factorizations",
+                            "part_condition_max",
+                            "residual_m_per_s",
+                            "kinetic_energy_j",
+                            "problem_hash",
+                            "solution_hash",
+                            "state_hash"};
+
+struct Case {
+  std::string name;
+  Arguments scene;
+};
+
+const Case kCases[] = {
+    {"chain_drop", {"--scene", "chain_drop", "--links", "40", "--steps", "120"}},
+    {"log_tower", {"--scene", "log_tower", "--layers", "6", "--steps", "90"}},
+    {"rock_pile", {"--scene", "rock_pile", "--bodies", "40", "--steps", "120"}},
+    {"large_rock_pile", {"--scene", "large_rock_pile", "--bodies", "50", "--steps", "120"}},
+    {"stiff_pile", {"--scene", "rock_pile", "--bodies", "30", "--steps", "90", "--cfm", "1e-10"}},
+};
+
+CsvTable run(const Case& given, const Arguments& combinations) {
+  const TemporaryDirectory directory;
+  Arguments arguments = {
+      "run",   "--measure-every", "30", "--repeats", "1", "--threads", "2", "--max-bodies", "8",
+      "--out", directory / "out"};
+  arguments.insert(arguments.end(), given.scene.begin(), given.scene.end());
+  arguments.insert(arguments.end(), combinations.begin(), combinations.end());
+  const ProgramResult result = run_cleave(arguments);
+  EXPECT_TRUE(result.exit_code == 0 || result.exit_code == 2) << result.err;  // some solvers may miss
+  return read_csv(directory / "out/steps.csv");
+}
+
+// The golden columns of every combination with the paper's solver, then of every solver with one combination.
+std::string golden_text(const Case& given) {
+  std::string text = joined(kColumns, ",") + "\n";
+  for (const Arguments& combinations :
+       {Arguments{"--partitioner", "all", "--refiner", "all", "--solver", "schur"},
+        Arguments{"--partitioner", "mindp", "--refiner", "fm", "--solver", joined(solver_choices(), ",")}}) {
+    const CsvTable table = run(given, combinations);
+    for (std::size_t row = 0; row < table.rows.size(); ++row) {
+      for (const std::string& column : kColumns) text += table.at(row, column) + ",";
+      text.back() = '\n';
+    }
+  }
+  return text;
+}
+
+class GoldenRowsTest : public testing::TestWithParam<Case> {};
+
+TEST_P(GoldenRowsTest, AreTheSameOnEveryMachine) {
+  const std::string path =
+      std::string(CLEAVE_SOURCE_DIR) + "/tests/harness/golden/" + GetParam().name + ".csv";
+  const std::string found = golden_text(GetParam());
+  if (std::getenv("CLEAVE_WRITE_GOLDEN") != nullptr) {
+    std::ofstream(path, std::ios::binary) << found;
+    FAIL() << path << " is written; run the test again without CLEAVE_WRITE_GOLDEN";
+  }
+  const CsvTable stored = read_csv(path), now = parse_csv(found);
+  ASSERT_EQ(now.header, stored.header);
+  ASSERT_EQ(now.rows.size(), stored.rows.size());
+  for (std::size_t row = 0; row < now.rows.size(); ++row) {
+    ASSERT_EQ(now.rows[row], stored.rows[row]) << "row " << row + 2 << " of " << path;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, GoldenRowsTest, testing::ValuesIn(kCases),
+                         [](const auto& info) { return info.param.name; });
+
+// The same program on a processor without AVX-512, and on one that is too old, both emulated.
+TEST(EmulatedProcessorTest, GivesEveryColumnOfThisOne) {
+  const TemporaryDirectory directory;
+  const auto arguments = [&](const std::string& out) {
+    return Arguments{"run",
+                     "--scene",
+                     "rock_pile",
+                     "--bodies",
+                     "20",
+                     "--steps",
+                     "60",
+                     "--measure-every",
+                     "20",
+                     "--repeats",
+                     "1",
+                     "--max-bodies",
+                     "6",
+                     "--partitioner",
+                     "mindp,mix",
+                     "--refiner",
+                     "fm",
+                     "--solver",
+                     "schur,exact,dense,pivot:schur-bodies",
+                     "--out",
+                     directory / out};
+  };
+  ASSERT_EQ(run_cleave(arguments("here")).exit_code, 0);
+  Arguments emulated = {"-cpu", "Haswell", CLEAVE_PROGRAM};
+  const Arguments run = arguments("there");
+  emulated.insert(emulated.end(), run.begin(), run.end());
+  ASSERT_EQ(run_program(CLEAVE_EMULATOR, emulated).exit_code, 0);
+  const CsvTable here = read_csv(directory / "here/steps.csv"),
+                 there = read_csv(directory / "there/steps.csv");
+  ASSERT_EQ(here.rows.size(), there.rows.size());
+  ASSERT_GT(here.rows.size(), 0u);
+  for (const std::string& column : here.header) {
+    if (column.starts_with("t_")) continue;
+    EXPECT_EQ(here.column(column), there.column(column)) << column;
+  }
+}
+
+TEST(EmulatedProcessorTest, AProcessorThatIsTooOldGetsOneLine) {
+  const ProgramResult result = run_program(CLEAVE_EMULATOR, {"-cpu", "Nehalem", CLEAVE_PROGRAM, "list"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(count_lines(result.err), 1);
+  EXPECT_NE(result.err.find("x86-64-v3"), std::string::npos);
+  EXPECT_EQ(result.out, "");
+}
+}  // namespace
+}  // namespace cleave
