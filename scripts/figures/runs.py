@@ -1,4 +1,6 @@
 """What was run: a table a machine, in which runs that differ in nothing but name and scene share a line."""
+import re
+
 from cleave_results import machine
 from figures import page
 from figures.choose import step_count, title
@@ -28,11 +30,16 @@ def _lines(experiments):
     for experiment in experiments:
         groups.setdefault(_alike(experiment), []).append(experiment)
     for (folder, solvers, steps, state), found in groups.items():
-        names = ", ".join(experiment.name.rpartition("/")[2] for experiment in found)
+        names = ", ".join(sorted((experiment.name.rpartition("/")[2] for experiment in found), key=_natural))
         scenes = in_order((scene for experiment in found for scene in experiment.rows["scene"]), ())
         status = [value for experiment in found for value in experiment.rows["status"]]
         yield (f"{folder}/ {names}" if folder else names, ", ".join(map(title, scenes)), solvers, steps,
                f"{status.count('ok')} of {len(status)}", state)
+
+
+def _natural(name):
+    """Sorts pgs_30 before pgs_100."""
+    return [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
 
 
 def _alike(experiment):
