@@ -20,6 +20,7 @@ def load(directory, solver):
     tree = read_tree(directory)
     blocks = make_blocks(tree)
     style.give_colors(name for block in blocks for name in block.rows["partitioner"])
+    style.give_looks(name for block in blocks for name in block.rows["solver"])
     main, notes = main_blocks(blocks, solver)
     return Data(tree, solver, blocks, main, [*tree.messages, *notes, *_failures(tree)])
 

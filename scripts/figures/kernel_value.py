@@ -9,16 +9,7 @@ from figures.tree import NoData
 
 KERNELS = ("schur-rows", "schur-bodies")
 WORSE, BETTER = ("mindp", "none"), ("mix", "fm")
-LOOKS = {
-    "schur-rows": {
-        "marker": "s",
-        "color": style.INK
-    },
-    "schur-bodies": {
-        "marker": "o",
-        "color": style.MUTED
-    }
-}
+SOLVERS = {"schur-rows": "schur", "schur-bodies": "pivot:schur-bodies"}  # whose look a kernel has
 
 
 def strategy_of(solver, kernel):
@@ -68,16 +59,22 @@ def draw(data):
     figure, ax = style.pyplot.subplots(figsize=(style.WIDTH_IN, 0.6 * len(bars) + 1.0))
     for y, (_, pair) in enumerate(bars):
         for shift, kernel, (ratio, low, high, _) in zip((-0.12, 0.12), KERNELS, pair):
-            ax.hlines(y + shift, low, high, color=LOOKS[kernel]["color"], linewidth=1.4)
+            look = style.solver_look(SOLVERS[kernel])
+            ax.hlines(y + shift, low, high, color=look["color"], linewidth=1.4)
             ax.plot(ratio,
                     y + shift,
                     linestyle="none",
                     markersize=6,
-                    **LOOKS[kernel],
+                    **look,
                     label=kernel if y == 0 else None)
             ax.annotate(f"{ratio:.2f}", (max(high, ratio), y + shift), (5, 0),
                         textcoords="offset points",
-                        va="center")
+                        va="center",
+                        bbox={
+                            "facecolor": "white",
+                            "linewidth": 0,
+                            "pad": 0.5
+                        })
     ax.axvline(1, color=style.MUTED, linewidth=0.8, linestyle="--")
     ax.set_yticks(range(len(bars)), [name for name, _ in bars])
     ax.set_ylim(len(bars) - 0.5, -0.5)

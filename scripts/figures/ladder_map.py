@@ -17,6 +17,8 @@ EXPLAINED = {
                "compliance."
 }
 
+TEXT_PT, WIDEST_TEXT = 7.5, 0.85  # of the texts of cells; the share of a cell that they may take
+
 
 def series_of(ladder):
     """What one climbs: the rung's name where it has several values, else the parameter."""
@@ -45,21 +47,17 @@ def draw(data):
     judged = {column: title for column, title in JUDGED.items() if column in ladder}
     figure, axes = style.pyplot.subplots(len(judged),
                                          1,
-                                         sharex=True,
                                          squeeze=False,
-                                         figsize=(min(style.WIDTH_IN, 0.8 * len(names) + 2.8),
-                                                  (0.27 * len(solvers) + 0.3) * len(judged) + 1.5))
+                                         figsize=(min(style.WIDTH_IN, 0.6 * len(solvers) + 3.2),
+                                                  (0.21 * len(names) + 1.3) * len(judged) + 0.3))
     for ax, (column, title) in zip(axes.flat, judged.items()):
-        cells = {(solver, name): climb(ladder, name, solver, column) for solver in solvers for name in names}
-        image = _map(ax, cells, names, solvers)
+        cells = {(name, solver): climb(ladder, name, solver, column) for name in names for solver in solvers}
+        image = _map(ax, cells, [_with_parameter(ladder, name) for name in names], solvers)
         ax.set_title(title)
-    axes.flat[-1].set_xticks(numpy.arange(len(names)) + 0.5,
-                             [_with_parameter(ladder, name) for name in names],
-                             rotation=40,
-                             ha="right",
-                             rotation_mode="anchor")
     figure.colorbar(image, ax=axes, label="share of rungs held", pad=0.01,
                     fraction=0.03).outline.set_visible(False)
+    for ax in axes.flat:
+        _fit_texts(ax)
     rungs = ladder[["series", "value"]].drop_duplicates().shape[0]
     return figure, (
         f"The stability ladder, {rungs} rungs, every solver in a world of its own. A cell names the value at "
@@ -68,14 +66,20 @@ def draw(data):
 
 
 def _map(ax, cells, names, solvers):
-    shares = numpy.array(
-        [[math.nan if cells[solver, name] is None else cells[solver, name][0]
-          for name in names]
-         for solver in solvers])
-    image = ax.pcolormesh(shares, cmap="cividis", vmin=0, vmax=1, edgecolors="white", linewidth=1.5)
-    for (solver, name), cell in cells.items():
-        _cell_text(ax, names.index(name), solvers.index(solver), cell)
-    ax.set_yticks(numpy.arange(len(solvers)) + 0.5, solvers)
+    """names: of the series, in the order of the cells."""
+    table = list(cells.values())
+    shares = numpy.array([math.nan if cell is None else cell[0] for cell in table])
+    image = ax.pcolormesh(shares.reshape(len(names), len(solvers)),
+                          cmap="cividis",
+                          vmin=0,
+                          vmax=1,
+                          edgecolors="white",
+                          linewidth=1.5)
+    for index, cell in enumerate(table):
+        _cell_text(ax, index % len(solvers), index // len(solvers), cell)
+    ax.set_yticks(numpy.arange(len(names)) + 0.5, names)
+    ax.set_xticks(numpy.arange(len(solvers)) + 0.5, solvers, rotation=30, ha="left", rotation_mode="anchor")
+    ax.xaxis.tick_top()
     ax.invert_yaxis()
     ax.grid(False)
     ax.tick_params(length=0)
@@ -100,8 +104,19 @@ def _cell_text(ax, x, y, cell):
             "holds" if value is None else _short(value),
             ha="center",
             va="center",
-            fontsize=7,
+            fontsize=TEXT_PT,
             color="white" if share < 0.55 else style.INK)
+
+
+def _fit_texts(ax):
+    """One size for all texts of a map, small enough for the widest to leave the margins of its cell free."""
+    ax.figure.draw_without_rendering()
+    (left, top), (right, bottom) = ax.transData.transform([(0, 0), (1, 1)])
+    extents = [text.get_window_extent() for text in ax.texts]
+    share = max((max(extent.width / (right - left), extent.height / (top - bottom)) for extent in extents),
+                default=0)
+    for text in ax.texts if share > WIDEST_TEXT else ():
+        text.set_fontsize(TEXT_PT * WIDEST_TEXT / share)
 
 
 def _short(value):

@@ -33,10 +33,15 @@ def _width_px(png):
 
 
 def picture(png, caption, downloads=()):
-    """A figure with its caption and (label, file, media type) to save."""
+    """A figure with its caption and (label, file, media type) to save.
+
+    A check box that is not seen shows it in full size and back, so that no script is needed.
+    """
     links = " · ".join(download(*entry) for entry in downloads)
     alt = html.escape(caption, quote=True)
-    return (f'<figure><img style="width:{_width_px(png)}px" alt="{alt}" src="{data_uri(png, "image/png")}">'
+    return (f'<figure><label class="zoom" title="full size and back"><input type="checkbox" '
+            f'aria-label="full size"><span class="frame"><img style="--width:{_width_px(png)}px" alt="{alt}" '
+            f'src="{data_uri(png, "image/png")}"></span></label>'
             f'<figcaption>{rich(caption)} <span class="links">{links}</span></figcaption></figure>')
 
 

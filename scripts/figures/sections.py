@@ -3,10 +3,10 @@ import html
 import importlib
 import pathlib
 
-from cleave_results import ResultError, load_paper_table1, machine
+from cleave_results import ResultError, load_paper_table1
 from figures import page, style
-from figures.choose import step_count, title
 from figures.registry import FIGURES
+from figures.runs import runs_body
 from figures.table_html import SIGNS
 from figures.tables import lowest_totals, scene_tables, table1_body, verdicts_body
 from figures.tree import NoData
@@ -37,7 +37,9 @@ def build(data, directory):
                      PAPER)
     ]
     sections += [_figure(data, files, figure, BEYOND, gaps) for figure in FIGURES if not figure.paper]
-    sections += [_replay(directory, files, gaps), _runs(data), _messages(data)]
+    sections += [_replay(directory, files, gaps),
+                 page.Section("runs", "What was run", runs_body(data.tree.experiments), RUNS),
+                 _messages(data)]
     return [_summary(data, tables, verdicts, gaps), *sections], gaps
 
 
@@ -120,20 +122,6 @@ def _missing(gaps):
         for anchor, heading, reason in gaps
     ]
     return f"<h3>Not in this report</h3><ul>{''.join(lines)}</ul>" if lines else ""
-
-
-def _runs(data):
-    rows = []
-    for experiment in data.tree.experiments:
-        frame, options = experiment.rows, experiment.manifest.get("options", {})
-        ok = (frame["status"] == "ok").sum()
-        rows.append((experiment.name, ", ".join(map(title, frame["scene"].unique())),
-                     ", ".join(sorted(frame["solver"].unique())),
-                     f"{step_count(frame)} of {options.get('steps', '?')}", f"{ok} of {len(frame)}",
-                     experiment.manifest.get("state", "?"), machine(experiment.manifest),
-                     experiment.manifest.get("utc_start", "?")))
-    head = ("directory", "scene", "solvers", "steps measured", "rows ok", "state", "machine", "started (UTC)")
-    return page.Section("runs", "What was run", page.table(head, rows), RUNS)
 
 
 def _messages(data):

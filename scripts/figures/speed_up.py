@@ -1,7 +1,6 @@
 """Modelled speed-up for 1 to 16 workers, beside what runs with more threads measured."""
 import re
 
-import numpy
 import pandas
 
 from figures import style
@@ -10,6 +9,7 @@ from figures.tree import NoData
 
 MODEL = re.compile(r"t_s_model_p(\d+)_ms")
 SPREAD = 1.35  # ratio of the places of the last and the first mark of as many workers
+IDEAL = {"color": "#BBBBBB", "linewidth": 3, "zorder": 1}
 KEYS = ["seed", "step", "partitioner", "refiner"]
 
 
@@ -18,30 +18,46 @@ def draw(data):
     if not groups:
         raise NoData("no one-thread run with columns t_s_model_p<N>_ms")
     figure, axes = style.panels(len(groups), 2, 2.6, sharey=True)
-    measured, faults = False, []
+    measured, shares = False, []
     for ax, (name, base, others) in zip(axes, groups):
-        faults.append(_model(ax, base.ok))
-        measured |= _measured(ax, base, others)
+        _model(ax, base.ok)
+        drawn, found = _measured(ax, base, others)
+        measured |= drawn
+        shares += found
         ax.set_title(name)
-    # The ideal line goes out of the picture; the curves decide how high it is.
-    heights = [height for ax in axes for line in ax.lines[1:] for height in line.get_ydata()]
-    axes[0].set_ylim(min(0.9, 0.9 * min(heights)), 1.1 * max(heights))
+    _limits(axes)
     rows = pandas.concat([base.ok for _, base, _ in groups])
     names, refiners = style.partitioners_in(rows["partitioner"]), style.refiners_in(rows["refiner"])
     lines = [
         style.matplotlib.lines.Line2D([], [], **style.line_look("-", name), label=name) for name in refiners
     ]
+    lines.append(style.matplotlib.lines.Line2D([], [], **IDEAL, label="ideal"))
     style.legend_above(figure, [*style.partitioner_patches(names), *lines], columns=len(names) + len(lines))
     said = ("Marks with a black edge: measured, t_s with one thread over t_s with that many on the same "
             "steps, spread sideways." if measured else
             "No data: no run with more threads of the same setup, so nothing measured stands beside.")
-    worst = max((fault for fault in faults if fault is not None), default=None)
-    check = "" if worst is None else f" The model's single worker is within {worst:.1%} of the measured t_s."
+    check = (f" There, the modelled time of a combination with as many workers is {min(shares):.2f} to "
+             f"{max(shares):.2f} of the measured." if shares else "")
     parts = [part for _, base, others in groups for part in [base, *others]]
     return figure, (
         "Speed-up of the solve against the number of workers, as ratio of mean t_s. Curves: modelled from "
         "the task times of one-thread runs (every parallel stage takes the makespan of its tasks, longest "
-        f"first). Grey: ideal. {said}{check} {machines(parts)}")
+        f"first). {said}{check} {machines(parts)}")
+
+
+def _limits(axes):
+    """Room for every mark with its rim; the ideal line may go out of the picture.
+
+    Both axes are logarithmic, so that it is straight.
+    """
+    heights = [height for ax in axes for line in ax.lines if line.get_gid() != "ideal"
+               for height in line.get_ydata() if height > 0]
+    room = max(1.3, (max(heights) / min(heights))**0.12)
+    axes[0].set_ylim(min(heights) / room, max(heights) * room)
+    for axis in [ax.yaxis for ax in axes]:
+        axis.set_major_locator(style.matplotlib.ticker.LogLocator(subs=(1, 1.5, 2, 3, 5, 7)))
+        axis.set_major_formatter(style.matplotlib.ticker.FuncFormatter(lambda value, _: style.short(value)))
+        axis.set_minor_locator(style.matplotlib.ticker.NullLocator())
 
 
 def _groups(data):
@@ -68,25 +84,21 @@ def model_columns(rows):
 
 
 def _model(ax, rows):
-    """Draws the curves; returns the largest relative difference between the single worker and t_s."""
     columns = model_columns(rows)
-    ideal = numpy.geomspace(1, max(columns), 50)
-    ax.plot(ideal, ideal, color=style.GRID, linewidth=3, zorder=1)
+    ax.plot([1, max(columns)], [1, max(columns)], **IDEAL, gid="ideal")
     for (partitioner, refiner), part in rows.groupby(["partitioner", "refiner"]):
         means = part[list(columns.values())].mean()
         look = style.line_look(partitioner, refiner)
         ax.plot(list(columns), means[columns[1]] / means, **look, markersize=3, linewidth=1)
-    ax.set(xscale="log", xlabel="workers", ylabel="speed-up of $t_s$")
+    ax.set(xscale="log", yscale="log", xlabel="workers", ylabel="speed-up of $t_s$")
     ax.set_xticks(list(columns), list(map(str, columns)))
     ax.xaxis.set_minor_locator(style.matplotlib.ticker.NullLocator())
-    if "t_s_ms" not in rows:
-        return None
-    return (rows[columns[1]] / rows["t_s_ms"] - 1).abs().max()
 
 
 def _measured(ax, base, others):
+    """Draws the marks; returns (whether there are any, modelled over measured times of as many workers)."""
     keys = [key for key in KEYS if key in base.rows]
-    drawn = False
+    drawn, shares = False, []
     for other in others:
         both = base.ok.merge(other.ok, on=keys, suffixes=("_1", "_n"))
         combinations = list(both.groupby(["partitioner", "refiner"]))
@@ -103,4 +115,14 @@ def _measured(ax, base, others):
                     markeredgewidth=0.6,
                     zorder=5)
             drawn = True
-    return drawn
+            modelled = _modelled_with(part, other.threads)
+            if modelled is not None:
+                shares.append(modelled / part["t_s_ms_n"].mean())
+    return drawn, shares
+
+
+def _modelled_with(part, workers):
+    """Mean modelled time of a one-thread run joined with another; None where the model lacks that number."""
+    name = f"t_s_model_p{workers}_ms"
+    values = next((part[column] for column in (f"{name}_1", name) if column in part), None)
+    return values.mean() if values is not None and values.gt(0).any() else None

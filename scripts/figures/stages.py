@@ -68,9 +68,8 @@ def _draw(panels):
     stages = stage_columns(frames)
     if not stages:
         raise NoData("no column t_s_<stage>_ms with a time")
-    colors = {
-        column: style.STAGE_COLORS[index % len(style.STAGE_COLORS)] for index, column in enumerate(stages)
-    }
+    looks = style.stage_colors(stages.values())
+    colors = {column: looks[stage] for column, stage in stages.items()}
     counts = list(map(len, panels.values()))
     most_of_line = [max(counts[first:first + COLUMNS]) for first in range(0, len(counts), COLUMNS)]
     heights = [0.165 * most + 0.75 for most in most_of_line]

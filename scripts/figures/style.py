@@ -1,6 +1,8 @@
-"""One look for all figures: Okabe-Ito colours that the colour-blind can tell apart, one a partitioner.
+"""One look for all figures: a colour a partitioner, a colour and a marker a solver, a colour a stage.
 
-Refiners are told apart by hatch and tint (bars) or marker and line style (curves), solvers by marker.
+The colours of each kind are chosen so that red-green blind readers can tell any two of them apart too, by
+lightness or by blue against yellow. Refiners are told apart by hatch and tint (bars) or marker and line
+style (curves).
 """
 import matplotlib
 
@@ -18,18 +20,39 @@ PNG_DPI = 200
 INK, MUTED, GRID, FAILED = "#1a1a1a", "#6b6b6b", "#dddddd", "#b34700"
 COLORS = {
     "mindp": "#0072B2",
-    "maxdp": "#D55E00",
-    "bfs": "#009E73",
-    "mr": "#CC79A7",
-    "mix": "#E69F00",
-    NO_PARTITIONER: "#6b6b6b"
+    "maxdp": "#B84000",
+    "bfs": "#00916A",
+    "mr": "#E0A2CC",
+    "mix": "#F0B000",
+    NO_PARTITIONER: "#333333"
 }
-FREE_COLORS = ("#56B4E9", "#000000", "#882255", "#999933", "#F0E442")  # for partitioners that come later
+FREE_COLORS = ("#56B4E9", "#882255", "#999933", "#F0E442")  # for names that come later
 TINTS, HATCHES = (1.0, 0.62, 0.28), (None, "////", "....", "xxxx", "++++")
 LINES, MARKERS = ("-", "--", ":", "-."), ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p", "h", "*")
-# Stages are no partitioners: Paul Tol's "muted" scheme, also safe for the colour-blind.
-STAGE_COLORS = ("#332288", "#88CCEE", "#44AA99", "#117733", "#999933", "#DDCC77", "#CC6677", "#882255",
-                "#AA4499", "#BBBBBB")
+SOLVERS = {  # colour and marker
+    "exact": ("#000000", "D"),
+    "monolithic": ("#E07000", "v"),
+    "schur": ("#0072B2", "s"),
+    "pivot:schur-bodies": ("#2FBDE8", "P"),
+    "dense": ("#43415F", "X"),
+    "interior-point": ("#782430", "*"),
+    "pgs": ("#00A862", "o"),
+    "ode-step": ("#924D00", "h"),
+    "ode-quickstep": ("#B060A0", "^"),
+}
+FREE_MARKERS = ("<", ">", "p", "d", "H", "8")  # for solvers that come later
+STAGES = {
+    "analyze": "#271459",
+    "predict": "#7A9CF5",
+    "assemble": "#C86400",
+    "factor_local": "#1642C8",
+    "form_interface": "#F0E578",
+    "factor_interface": "#701A10",
+    "solve": "#6FAE72",
+    "check": "#0B0B0B",
+    "refine": "#A8609C",
+    "other": "#CCCCCC",
+}
 
 matplotlib.rcParams.update({
     "axes.axisbelow": True,
@@ -84,12 +107,31 @@ def give_colors(partitioners):
         _given[name] = FREE_COLORS[index % len(FREE_COLORS)]
 
 
-_given = {}
+def give_looks(solvers):
+    """Gives solvers that came later a free colour and marker each, by alphabet."""
+    for index, name in enumerate(sorted(set(solvers) - set(SOLVERS))):
+        _given_looks[name] = (FREE_COLORS[index % len(FREE_COLORS)], FREE_MARKERS[index % len(FREE_MARKERS)])
+
+
+_given, _given_looks = {}, {}
 
 
 def color(partitioner):
     """The same for a name in every figure."""
     return COLORS.get(partitioner) or _given.get(partitioner, FREE_COLORS[0])
+
+
+def solver_look(solver):
+    """Colour and marker as keyword arguments, the same for a solver in every figure."""
+    base, marker = SOLVERS.get(solver) or _given_looks.get(solver, (FREE_COLORS[0], FREE_MARKERS[0]))
+    return {"color": base, "marker": marker}
+
+
+def stage_colors(stages):
+    """{stage: colour}; stages that came later get a free colour each, by alphabet."""
+    later = sorted(set(stages) - set(STAGES))
+    free = {name: FREE_COLORS[index % len(FREE_COLORS)] for index, name in enumerate(later)}
+    return {name: STAGES.get(name) or free[name] for name in stages}
 
 
 def tint(base, strength):
@@ -124,6 +166,14 @@ def refiner_patches(refiners):
     """Legend entries that explain the hatches."""
     looks = {refiner: dict(bar_look(NO_PARTITIONER, refiner)) for refiner in refiners}
     return [matplotlib.patches.Patch(label=refiner, **look) for refiner, look in looks.items()]
+
+
+def solver_marks(solvers):
+    """Legend entries that explain the markers of solvers, in the order of SOLVERS."""
+    return [
+        matplotlib.lines.Line2D([], [], **solver_look(name), linestyle="none", markersize=6, label=name)
+        for name in in_order(solvers, SOLVERS)
+    ]
 
 
 def partitioner_patches(partitioners):

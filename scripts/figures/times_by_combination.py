@@ -16,8 +16,11 @@ MEDIAN = {
     "markerfacecolor": "white",
     "markeredgecolor": style.INK,
     "markeredgewidth": 0.8,
-    "color": style.INK
+    "color": style.INK,
+    "zorder": 7  # above the values at the top edge
 }
+
+BEYOND = {"marker": "^", "markersize": 4, "color": style.INK, "zorder": 6}  # a quartile outside the panel
 
 
 def draw(data):
@@ -32,7 +35,9 @@ def draw(data):
     caption = (
         "Average time t_s of a solve in every example and combination. Bars are means over the measured "
         "steps, dots medians, lines reach from the lower to the upper quartile over the steps; the lowest "
-        "mean carries its value in bold. Bars that go out of a panel carry theirs at the top edge. ")
+        "mean carries its value in bold. Bars that go out of a panel carry theirs at the top edge; an "
+        "arrowhead there: the upper quartile lies further up, and so does the median where its dot is "
+        "missing. ")
     return figure, caption + gaps + provenance({title(scene): data.main[scene] for scene in scenes})
 
 
@@ -45,8 +50,10 @@ def _panel(ax, rows, all_rows):
     means = {name: values.mean() for name, values in times.items()}
     lowest = min(means, key=means.get)
     # One slow combination must not flatten the others.
-    top = 1.12 * max(
-        mean for mean in means.values() if mean <= HIGHEST_BAR * statistics.median(means.values()))
+    highest = HIGHEST_BAR * statistics.median(means.values())
+    uppers = {name: values.quantile(0.75) for name, values in times.items()}
+    top = 1.12 * max(height for name, mean in means.items() if mean <= highest
+                     for height in (mean, uppers[name]) if height <= highest)
     ax.set_ylim(0, top or 1)
     for name in itertools.product(partitioners, refiners):
         x = partitioners.index(name[0]) + (refiners.index(name[1]) - (len(refiners) - 1) / 2) * width
@@ -54,6 +61,8 @@ def _panel(ax, rows, all_rows):
             _bar(ax, x, width, name, times[name], marked=name == lowest)
             if means[name] > top:
                 _cut_label(ax, x, means[name])
+            if uppers[name] > top:
+                ax.plot(x, 1, **BEYOND, transform=ax.get_xaxis_transform(), clip_on=False)
         else:
             run = ((all_rows["partitioner"] == name[0]) & (all_rows["refiner"] == name[1])).any()
             ax.text(x,
@@ -94,7 +103,7 @@ def _bar(ax, x, width, name, times, marked):
 
 def _cut_label(ax, x, mean):
     ax.text(x,
-            0.97,
+            0.95,
             style.short(mean),
             transform=ax.get_xaxis_transform(),
             rotation=90,

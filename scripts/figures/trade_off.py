@@ -1,13 +1,18 @@
 """Time against error for every solver in the data, one panel a setup that was solved by several of them."""
+
+import numpy
 import pandas
 
 from figures import style
 from figures.choose import provenance
+from figures.labels import Label, place
+from figures.solver_families import count_text, families, full_name, solver_of
 from figures.solver_groups import MOST_PANELS, groups, of_many_solvers, shared_rows
 from figures.tree import NoData
 
 RESIDUAL_LIMIT = 1e-9  # m/s; the judge accepts up to this, times the largest free velocity above 1 m/s
 FLOOR = 1e-17  # where a residual of exactly 0 is drawn
+CLUSTER_PX = 12  # points as close as that are named together
 
 
 def points(parts):
@@ -42,19 +47,21 @@ def draw(data):
         raise NoData("no row has both a time and a residual")
     figure, axes = _layout([table["label"].nunique() for *_, table in shown])
     for (scatter, strip), (name, _, table) in zip(axes, shown):
-        labels = list(table.groupby("label")["time_0.5"].min().sort_values().index)
-        markers = {label: style.MARKERS[index % len(style.MARKERS)] for index, label in enumerate(labels)}
-        _scatter(scatter, table, markers)
-        _strip(strip, table, markers)
+        _scatter(scatter, table)
+        _strip(strip, table)
         scatter.set_title(name)
-    names = style.partitioners_in(name for *_, table in shown for name in table["partitioner"])
-    style.legend_above(figure, style.partitioner_patches(names), columns=len(names))
+    solvers = {solver_of(label) for *_, table in shown for label in table["label"]}
+    style.legend_above(figure, style.solver_marks(solvers), columns=len(solvers))
+    for (scatter, _), (*_, table) in zip(axes, shown):
+        name_points(scatter, table)
     return figure, (
-        "Time against error, and the same times solver by solver. Time is t_s + t_pr, error the judge's "
-        "residual; points are medians over the steps that all solvers of a panel have in common, one a "
-        "solver and combination, lines quartiles; the grey staircase joins what nothing beats in both. "
-        f"Dashed: {_power(RESIDUAL_LIMIT)} m/s, what exact means. Hollow: not accepted by the judge in "
-        f"every step. A residual of 0 is drawn at {_power(FLOOR)}. {_left_out(found)}" +
+        "Time against error, and the same times solver by solver, with the fastest combination in brackets. "
+        "Time is t_s + t_pr, error the judge's residual; points are medians over the steps that all solvers "
+        "of a panel have in common, one a solver and combination, lines quartiles. Coloured lines join the "
+        "sweeps or iterations of one solver, with their numbers; the names beside a cluster stand fastest "
+        "first; the broad grey staircase joins what nothing beats in both. "
+        f"Dashed: {_power(RESIDUAL_LIMIT)} m/s, what exact means. Hollow: not accepted by the "
+        f"judge in every step. A residual of 0 is drawn at {_power(FLOOR)}. {_left_out(found)}" +
         provenance({name: parts for name, parts, _ in shown}))
 
 
@@ -86,76 +93,94 @@ def _layout(counts):
     return figure, axes
 
 
-def _scatter(ax, table, markers):
+def _scatter(ax, table):
     for _, row in table.iterrows():
-        base = style.color(row["partitioner"])
-        ax.hlines(row["residual_0.5"],
-                  row["time_0.25"],
-                  row["time_0.75"],
-                  color=base,
-                  linewidth=0.7,
-                  alpha=0.6)
-        ax.vlines(row["time_0.5"],
-                  row["residual_0.25"],
-                  row["residual_0.75"],
-                  color=base,
-                  linewidth=0.7,
-                  alpha=0.6)
-        ax.plot(row["time_0.5"], row["residual_0.5"], markers[row["label"]], **_face(row), markersize=5.5)
-    front = table.sort_values(["time_0.5", "residual_0.5"])
-    front = front[front["residual_0.5"] < front["residual_0.5"].cummin().shift(fill_value=float("inf"))]
-    ax.step(front["time_0.5"], front["residual_0.5"], where="post", color=style.MUTED, linewidth=1, zorder=1)
+        look = style.solver_look(solver_of(row["label"]))
+        line = {"color": look["color"], "linewidth": 0.7, "alpha": 0.6}
+        ax.hlines(row["residual_0.5"], row["time_0.25"], row["time_0.75"], **line)
+        ax.vlines(row["time_0.5"], row["residual_0.25"], row["residual_0.75"], **line)
+        ax.plot(row["time_0.5"], row["residual_0.5"], **_mark(row), markersize=5.5)
+    for solver, family in families(table).items():
+        ax.plot(family["time_0.5"],
+                family["residual_0.5"],
+                color=style.solver_look(solver)["color"],
+                linewidth=0.9,
+                zorder=1.5)
+    ax.step(*front(table), where="post", color=style.GRID, linewidth=3, zorder=1)
     ax.axhline(RESIDUAL_LIMIT, color=style.INK, linewidth=0.8, linestyle="--", zorder=1)
     ax.set(xscale="log", yscale="log", xlabel="$t_s + t_{pr}$ per step, ms", ylabel="residual, m/s")
-    _name_inexact(ax, table)
+    ax.margins(0.07)
 
 
-def _name_inexact(ax, table):
-    """The names of solvers that lie above the limit, where there is room; the others stand close together.
-
-    Downwards at the one that has most points there, which are above no other; upwards at the others.
-    """
-    inexact = table[table["residual_0.5"] > RESIDUAL_LIMIT]
-    if inexact.empty:
-        return
-    inexact = inexact.sort_values("time_0.5")
-    families = inexact["label"].str.partition(",")[0]
-    for first, family, (_, row) in zip(~families.duplicated(), families, inexact.iterrows()):
-        down = family == families.mode()[0]
-        text = row["label"] if first else row["label"].removeprefix(f"{family}, ")
-        ax.annotate(text, (row["time_0.5"], row["residual_0.5"]), (3, -5 if down else 4),
-                    textcoords="offset points",
-                    rotation=-35 if down else 35,
-                    rotation_mode="anchor",
-                    va="top" if down else "bottom",
-                    fontsize=6.5,
-                    color=style.MUTED)
-    least, most = ax.get_ylim()
-    ax.set_ylim(least, most * (most / least)**(0.08 if families.nunique() < 2 else 0.2))
+def front(table):
+    """Times and residuals of the points that no other beats in both."""
+    table = table.sort_values(["time_0.5", "residual_0.5"])
+    table = table[table["residual_0.5"] < table["residual_0.5"].cummin().shift(fill_value=float("inf"))]
+    return table["time_0.5"], table["residual_0.5"]
 
 
-def _strip(ax, table, markers):
+def name_points(ax, table):
+    """Writes how many sweeps or iterations a point of a family had, and who the others are."""
+    ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())
+    names, joined = [], families(table)
+    for solver, family in joined.items():
+        color = style.readable(style.solver_look(solver)["color"])
+        for index, (_, row) in enumerate(family.iterrows()):
+            text = count_text(row["label"], with_unit=index == 0)
+            names.append(Label(text, (row["time_0.5"], row["residual_0.5"]), color))
+    alone = table[~table["label"].map(solver_of).isin(joined)]
+    names = [*_names_of_clusters(ax, alone), *names]
+    start, least = front(table)
+    lines = [list(zip(start.repeat(2)[1:], least.repeat(2)[:-1]))] if len(start) > 1 else []
+    lines += [list(zip(family["time_0.5"], family["residual_0.5"])) for family in joined.values()]
+    lines.append([(limit, RESIDUAL_LIMIT) for limit in ax.get_xlim()])
+    for _, row in table.iterrows():
+        lines.append([(row[f"time_{end}"], row["residual_0.5"]) for end in ("0.25", "0.75")])
+        lines.append([(row["time_0.5"], row[f"residual_{end}"]) for end in ("0.25", "0.75")])
+    place(ax, names, table[["time_0.5", "residual_0.5"]].to_numpy(), lines)
+
+
+def _names_of_clusters(ax, table):
+    """One label for points that lie too close together for one each: the solvers there, fastest first."""
+    table = table.sort_values("time_0.5")
+    places = ax.transData.transform(table[["time_0.5", "residual_0.5"]].to_numpy())
+    clusters = []  # of row numbers
+    for index, point in enumerate(places):
+        near = [
+            cluster for cluster in clusters if numpy.hypot(*(places[cluster] - point).T).min() < CLUSTER_PX
+        ]
+        clusters = [cluster for cluster in clusters if cluster not in near] + [sum(near, []) + [index]]
+    for cluster in clusters:
+        rows = table.iloc[sorted(cluster)]
+        first = rows.iloc[0]
+        text = "\n".join(dict.fromkeys(rows["label"]))
+        yield Label(text, (first["time_0.5"], first["residual_0.5"]), style.INK)
+
+
+def _strip(ax, table):
     """The times again, a line a solver."""
-    for y, (label, marker) in enumerate(markers.items()):
+    labels = list(table.groupby("label")["time_0.5"].min().sort_values().index)
+    names = []
+    for y, label in enumerate(labels):
         rows = table[table["label"] == label]
         for index, (_, row) in enumerate(rows.iterrows()):
-            place = y + (0.5 if len(rows) == 1 else 0.2 + 0.6 * index / (len(rows) - 1)) - 0.5
-            ax.hlines(place,
-                      row["time_0.25"],
-                      row["time_0.75"],
-                      color=style.color(row["partitioner"]),
-                      linewidth=0.7)
-            ax.plot(row["time_0.5"], place, marker, **_face(row), markersize=4)
-    ax.set_yticks(range(len(markers)), list(markers), fontsize=7)
-    ax.set_ylim(len(markers) - 0.4, -0.6)
+            place_y = y + (0.5 if len(rows) == 1 else 0.2 + 0.6 * index / (len(rows) - 1)) - 0.5
+            ax.hlines(place_y, row["time_0.25"], row["time_0.75"], color=_mark(row)["color"], linewidth=0.7)
+            ax.plot(row["time_0.5"], place_y, **_mark(row), markersize=4.5)
+        best = rows.loc[rows["time_0.5"].idxmin()]
+        ending = "" if len(rows) == 1 else f" ({best['partitioner']} {best['refiner']})"
+        names.append(full_name(label) + ending)
+    ax.set_yticks(range(len(labels)), names, fontsize=7)
+    ax.set_ylim(len(labels) - 0.4, -0.6)
     ax.tick_params(axis="y", length=0)
     ax.set_xlabel("$t_s + t_{pr}$ per step, ms")
 
 
-def _face(row):
-    base = style.color(row["partitioner"])
+def _mark(row):
+    look = style.solver_look(solver_of(row["label"]))
     return {
-        "markeredgecolor": base,
+        **look, "linestyle": "none",
+        "markeredgecolor": look["color"],
         "markeredgewidth": 0.9,
-        "markerfacecolor": base if row["accepted"] == 1 else "white"
+        "markerfacecolor": look["color"] if row["accepted"] == 1 else "white"
     }

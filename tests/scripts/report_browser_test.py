@@ -14,6 +14,18 @@ STATE = """[
   document.images.length,
   document.documentElement.scrollWidth - window.innerWidth
 ]"""
+# What reaches beyond the window, leaving out what scrolls in a box of its own.
+TOO_WIDE = """[...document.querySelectorAll("body *")]
+  .filter(element => !element.closest(".wide *, .frame *"))
+  .filter(element => element.getBoundingClientRect().right > document.documentElement.clientWidth + 0.5)
+  .map(element => `${element.tagName} ${element.className}`)"""
+# Boxes that hide a part of what is in them.
+SCROLLING = """[...document.querySelectorAll(".wide, .frame")]
+  .filter(box => box.scrollWidth > box.clientWidth).map(box => box.className)"""
+# [width of a picture on the page, of its file]
+PICTURE = """[document.querySelector("#figure3 img").getBoundingClientRect().width,
+              document.querySelector("#figure3 img").naturalWidth]"""
+SMALLEST_PICTURE_PX = 600  # where letters of 8 points in a figure of 7.4 inches are 9 pixels high
 LOADED = "document.readyState === 'complete'"
 
 
@@ -45,6 +57,47 @@ class ReportInBrowserTest(unittest.TestCase):
                     browser.value(f"{place}.scrollIntoView({{behavior: 'instant'}})")  # by its id
                     self.assertIsNone(blank_reason(browser.picture()), place)
                 self.assertEqual(browser.problems, [])
+
+    def open_page(self, width):
+        browser = self.enterContext(Browser(width, 900))
+        browser.open(self.page)
+        browser.wait_for(LOADED)
+        return browser
+
+    def test_nothing_is_clipped_on_a_wide_window(self):
+        browser = self.open_page(1280)
+        self.assertEqual(browser.value(TOO_WIDE), [])
+        self.assertEqual(browser.value(SCROLLING), [])
+
+    def test_on_a_phone_wide_things_scroll_in_their_own_box_and_letters_stay_legible(self):
+        browser = self.open_page(420)
+        self.assertEqual(browser.value(TOO_WIDE), [])
+        self.assertLessEqual({"wide", "frame"}, set(browser.value(SCROLLING)))
+        self.assertGreaterEqual(browser.value(PICTURE)[0], SMALLEST_PICTURE_PX)
+        viewport = browser.value("document.querySelector('meta[name=viewport]').content")
+        self.assertIn("width=device-width", viewport)
+        self.assertNotRegex(viewport, "user-scalable|maximum-scale")
+
+    def test_a_click_shows_a_picture_in_full_size_and_another_puts_it_back(self):
+        browser = self.open_page(420)
+        before, full = browser.value(PICTURE)
+        self.assertLess(before, full)
+        for width in (full, before):
+            x, y, *_ = browser.place("#figure3 .frame")
+            browser.click(x + 200, y + 50)
+            self.assertEqual(browser.value(PICTURE)[0], width)
+
+    def test_the_checks_of_width_find_what_they_are_there_to_find(self):
+        page = self.page.with_name("wide.html")
+        head = ("<!DOCTYPE html><html><head><link rel='icon' href='data:,'>"
+                "<style>.wide { overflow: auto } p { width: 900px }</style></head>")
+        for box, too_wide, scrolling in (("plain", ["P "], []), ("wide", [], ["wide"])):
+            page.write_text(f"{head}<div class={box}><p>long</p></div></html>")
+            with self.subTest(box), Browser(600, 400) as browser:
+                browser.open(page)
+                browser.wait_for(LOADED)
+                self.assertEqual(browser.value(TOO_WIDE), too_wide)
+                self.assertEqual(browser.value(SCROLLING), scrolling)
 
     def test_the_checks_fail_on_what_they_are_there_to_find(self):
         page = self.page.with_name("test.html")
