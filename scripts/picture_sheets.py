@@ -7,6 +7,7 @@ import matplotlib
 import numpy
 
 from cleave_results import PARTITIONERS, REFINERS
+from part_colouring import colour_bodies
 
 
 def title_of(scene):
@@ -56,6 +57,21 @@ def cells_of(motion):
         if partitioner in PARTITIONERS and refiner in REFINERS:
             cells.setdefault((partitioner, refiner), position)
     return cells
+
+
+def colours_of_cells(motion, index, cells):
+    """Colours of bodies by cell: parts keep those of the cell above, in the first row of the cell before."""
+    centres = motion.position[frame_of(motion, index)].astype(float)
+    colours, before = {}, {}
+    for refiner in REFINERS:
+        for partitioner in PARTITIONERS:
+            if (partitioner, refiner) in cells:
+                part = motion.measured["part"][index, cells[partitioner, refiner]]
+                alike = before.get(partitioner, before.get("last"))
+                colour = colour_bodies(part, motion.measured.edges(index), centres, alike)
+                colours[partitioner, refiner] = colour
+                before[partitioner] = before["last"] = (part, colour)
+    return colours
 
 
 def side_by_side(jobs):

@@ -161,7 +161,7 @@ def pack(motion, stride):
 
 
 def _settling_frames(motion):
-    """Some frames whose bodies set the size of ground and shadows, for which the first ones may be too high."""
+    """Some frames whose bodies set the size of ground and shadows; in the first ones they may be far above."""
     last = len(motion.step) - 1
     return numpy.linspace(last // 6, last, 12).astype(int)
 

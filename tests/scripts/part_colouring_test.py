@@ -76,6 +76,13 @@ class ColouringTest(unittest.TestCase):
             colour = colour_bodies(part, edges, centres)
             self.assert_parts_are_whole_and_neighbours_differ(part, colour, edges)
 
+    def test_parts_that_share_constraints_differ_however_far_they_are(self):
+        random = numpy.random.default_rng(5)
+        part, centres = numpy.arange(60), random.normal(size=(60, 3))
+        edges = random.integers(60, size=(120, 2))
+        edges = edges[edges[:, 0] != edges[:, 1]]
+        self.assert_parts_are_whole_and_neighbours_differ(part, colour_bodies(part, edges, centres), edges)
+
     def test_parts_all_differ_while_there_are_colours(self):
         part = numpy.arange(len(PART_COLOURS))
         centres = numpy.random.default_rng(1).normal(size=(len(part), 3))

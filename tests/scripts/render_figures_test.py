@@ -13,6 +13,7 @@ from cleave_results import ResultError
 from motion import load_motion
 from motion_colours import EDGE, NODE, PART_COLOURS
 from motion_pictures import Stage, picture_of_bodies, picture_of_parts, picture_with_graph
+from picture_sheets import cells_of, colours_of_cells
 from povray_scene import CONSTANT_LIGHT, Camera, graph, render
 
 SIZE = (160, 130)
@@ -113,6 +114,16 @@ class PictureTest(Scratch):
             y = (abs(relative @ up) + radii) / (half / aspect * depth)
             self.assertLess(max(x.max(), y.max()), 1 + 1e-9)
             self.assertGreater(max(x.max(), y.max()), 1 - 1e-9)
+
+    def test_parts_of_figure_2_have_one_colour_in_all_cells(self):
+        motion = self.motion()
+        parts = numpy.arange(motion_data.BODIES) // 2
+        for position in range(15):
+            motion.measured["part"][9, position] = numpy.random.default_rng(position).permutation(9)[parts]
+        colours = colours_of_cells(motion, 9, cells_of(motion))
+        self.assertEqual(len(colours), 15)
+        for colour in colours.values():
+            numpy.testing.assert_array_equal(colour, colours["mindp", "none"])
 
     def test_what_povray_does_not_understand_is_an_error(self):
         with self.assertRaisesRegex(ResultError, "povray failed: .*rror"):

@@ -241,6 +241,20 @@ class ViewerTest(unittest.TestCase):
         self.settle()
         numpy.testing.assert_allclose(self.browser.value(place), at_end)
 
+    def test_edges_between_parts_have_a_casing(self):
+        self.open()
+        self.browser.press("End")
+        cased = self.canvas()
+        self.browser.value("(() => { it().graph.casings.visible = false; it().change(); })()")
+        bare = self.canvas()
+        white = (cased > 0.99).all(axis=-1) & ~(bare > 0.99).all(axis=-1)
+        self.assertGreater(white.mean(), 0.001)
+        # And nothing else changes: it covers no line.
+        self.assertTrue((white | (abs(cased - bare).max(axis=-1) < 0.02)).all())
+        red = (bare[..., 0] > 0.4) & (bare[..., 1:] < 0.15).all(axis=-1)
+        self.assertGreater(red.mean(), 0.001)
+        self.assertFalse((white & red).any())
+
     def test_a_slow_machine_gets_fewer_pixels_while_it_plays_and_all_of_them_afterwards(self):
         self.open()
         full = self.browser.value("it().ui.canvas.width")
