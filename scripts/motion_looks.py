@@ -18,7 +18,7 @@ class Look:
 
 LOOKS = {
     "chain_drop": Look(eye=(-58, 56), tint=(0.62, 0.66, 0.71)),
-    "log_tower": Look(eye=(-35, 20), tint=(0.80, 0.62, 0.42), step=139, run_eye=(-155, 24)),
+    "log_tower": Look(eye=(-140, 20), tint=(0.80, 0.62, 0.42), step=139, run_eye=(-155, 24)),
     "rock_pile": Look(tint=(0.70, 0.67, 0.62)),
     "large_rock_pile": Look(tint=(0.70, 0.67, 0.62)),
 }
