@@ -9,7 +9,7 @@ from motion_pictures import Stage, picture_of_bodies
 from part_colouring import colour_sequence
 from picture_sheets import cells_of, show, side_by_side, title_of
 
-PICTURE_IN = 1.6  # wide
+PICTURE_IN = 2.0  # wide
 ASPECT = 4 / 3
 CELL = ("mix", "fm")
 
@@ -51,17 +51,17 @@ def draw_film_strip(motions, options):
 
 def _sheet(strips, pictures, columns):
     lines = [-(-len(frames) // columns) for _, frames in strips]
-    heights = [0.35 + 1.45 * count for count in lines]
+    heights = [0.4 + 1.8 * count for count in lines]
     figure = pyplot.figure(figsize=(PICTURE_IN * columns, sum(heights)), layout="constrained")
     figure.get_layout_engine().set(w_pad=0.01, h_pad=0.04, wspace=0, hspace=0)
     parts = numpy.atleast_1d(figure.subfigures(len(strips), 1, height_ratios=heights))
     for part, (motion, frames), count in zip(parts, strips, lines):
-        part.suptitle(f"{title_of(motion.scene)}, {motion.bodies} bodies", fontsize=11, x=0.01, ha="left")
+        part.suptitle(f"{title_of(motion.scene)}, {motion.bodies} bodies", fontsize=14, x=0.01, ha="left")
         grid = part.subplots(count, columns, squeeze=False)
         for axes in grid.ravel()[len(frames):]:
             axes.set_visible(False)
         for axes, frame in zip(grid.ravel(), frames):
             show(axes, next(pictures))
             seconds = motion.step[frame] * motion.attributes["h_s"]
-            axes.set_xlabel(f"step {motion.step[frame]}, {seconds:.2f} s", fontsize=9.5)
+            axes.set_xlabel(f"step {motion.step[frame]}, {seconds:.2f} s", fontsize=12)
     return figure
