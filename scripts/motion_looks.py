@@ -8,19 +8,17 @@ from motion_shapes import plane_polygons, rotation_matrix
 
 @dataclasses.dataclass(frozen=True)
 class Look:
-    """How a scene is shown: where the eye stands (degrees), what share of the body positions must be in view,
-    and what the bodies are made of."""
+    """How a scene is shown: where the eye stands (degrees), and what the bodies are made of."""
 
-    azimuth: float = -58
-    elevation: float = 32
-    keep: float = 1.0
+    eye: tuple = (-58, 32)  # azimuth, elevation
     tint: tuple = (0.68, 0.68, 0.68)
     step: int = None  # that shows the scene best; the last measured one where not given
+    run_eye: tuple = None  # for film strip and viewer, which show the whole run; the same where not given
 
 
 LOOKS = {
-    "chain_drop": Look(elevation=56, tint=(0.62, 0.66, 0.71)),
-    "log_tower": Look(azimuth=-35, elevation=20, keep=0.96, tint=(0.80, 0.62, 0.42), step=139),
+    "chain_drop": Look(eye=(-58, 56), tint=(0.62, 0.66, 0.71)),
+    "log_tower": Look(eye=(-140, 20), tint=(0.80, 0.62, 0.42), step=139, run_eye=(-155, 24)),
     "rock_pile": Look(tint=(0.70, 0.67, 0.62)),
     "large_rock_pile": Look(tint=(0.70, 0.67, 0.62)),
 }
@@ -47,29 +45,33 @@ def body_thickness(motion):
     return thickness
 
 
-def inliers(points, keep):
-    """Which points are among this share of those nearest to the middle."""
-    distance = numpy.linalg.norm(points - numpy.median(points, axis=0), axis=1)
-    return distance <= numpy.quantile(distance, keep)
+def body_outlines(motion, frames):
+    """(points, radii) of balls that just hold all bodies in some frames."""
+    outlines = [(geom.body, *geom.outline()) for geom in motion.geoms if geom.body >= 0]
+    points, radii = [], []
+    for frame in frames:
+        position = motion.position[frame].astype(float)
+        turn = [rotation_matrix(orientation) for orientation in motion.orientation[frame]]
+        for body, own, radius_m in outlines:
+            points.append(position[body] + own @ turn[body].T)
+            radii.append(numpy.full(len(own), radius_m))
+    return numpy.concatenate(points), numpy.concatenate(radii)
 
 
 @dataclasses.dataclass
 class Extent:
-    """The space that the shown bodies fill in some frames; bodies that flew away do not count."""
+    """The space that the bodies fill in some frames."""
 
-    points: numpy.ndarray  # (p, 3) positions of bodies
-    radii: numpy.ndarray  # (p) how far these reach
+    points: numpy.ndarray  # (p, 3) middles of balls that hold the bodies
+    radii: numpy.ndarray  # (p) of these
     wall_top_m: float
 
     @staticmethod
     def of(motion, frames):
-        keep, reach = look_of(motion).keep, body_reach(motion)
-        points = motion.position[frames].reshape(-1, 3).astype(float)
-        inside = inliers(points, keep)
+        points, radii = body_outlines(motion, frames)
         # Walls without end would hide what falls into the pit; they end where the bodies lie at last.
-        last = motion.position[frames[-1]]
-        wall_top_m = float((last[:, 2] + reach)[inliers(last, keep)].max())
-        return Extent(points[inside], numpy.tile(reach, len(frames))[inside], wall_top_m)
+        last, last_radii = body_outlines(motion, frames[-1:])
+        return Extent(points, radii, float((last[:, 2] + last_radii).max()))
 
     @property
     def low(self):

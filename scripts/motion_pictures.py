@@ -1,7 +1,7 @@
 """Pictures of one step of a recorded run: bodies in their true shapes, the constraint graph, parts."""
 import numpy
 
-from motion_colours import EDGE, NODE, part_colour
+from motion_colours import EDGE, INNER_EDGE, NODE, PART_COLOURS
 from motion_looks import Extent, body_reach, ground_polygons, look_of
 from motion_shapes import world_pose
 from povray_scene import (CONSTANT_LIGHT, GATHERED_LIGHT, Camera, graph, lights, polygon, render, rod, solid,
@@ -9,24 +9,25 @@ from povray_scene import (CONSTANT_LIGHT, GATHERED_LIGHT, Camera, graph, lights,
 
 GROUND = (0.93, 0.93, 0.925)
 WALL = (0.87, 0.88, 0.89)
+TILES = "checker srgb <0.90, 0.91, 0.92> srgb <1, 1, 1> scale 2"  # metres
 LEVEL = 0.999  # a plane whose normal rises this much is a floor
-INNER_EDGE = (0.45, 0.47, 0.50)  # inside a part
-CUT_EDGE = (0.84, 0.05, 0.10)
 
 
 class Stage:
     """Camera, lights and ground for pictures of one run that shall match."""
 
-    def __init__(self, motion, frames, size, gathered_light=True):
-        """frames: indices of the steps that are shown; size: pixels."""
+    def __init__(self, motion, frames, size, gathered_light=True, eye=None, tiles=False):
+        """frames: indices of the steps that are shown; size: pixels; eye: azimuth and elevation; tiles: of a
+        lone floor, so that bodies in the distance do not seem to float."""
         self.motion = motion
         self.size = size
         self.aspect = size[0] / size[1]
         self.look = look_of(motion)
+        self.floor = TILES if tiles else "srgb <1, 1, 1>"
         self.light = GATHERED_LIGHT if gathered_light else CONSTANT_LIGHT
         self.extent = Extent.of(motion, frames)
-        self.camera = Camera.around(self.extent.points, self.extent.radii, self.look.azimuth,
-                                    self.look.elevation, self.aspect)
+        self.camera = Camera.around(self.extent.points, self.extent.radii, *(eye or self.look.eye),
+                                    self.aspect)
 
     def render(self, content, walls=True):
         return render(
@@ -40,8 +41,8 @@ class Stage:
         ]
         if len(ground) == 1:
             floor, _, normal = ground[0]
-            return (f"plane {{ {vector(normal)}, {normal @ floor.position:.7g} pigment {{ srgb <1,1,1> }} "
-                    "finish { Floor } }\n")
+            return (f"plane {{ {vector(normal)}, {normal @ floor.position:.7g} "
+                    f"pigment {{ {self.floor} }} finish {{ Floor }} }}\n")
         return "".join(
             polygon(corners, GROUND if normal[2] > LEVEL else WALL)
             for _, corners, normal in ground
@@ -70,14 +71,11 @@ def tint_of(motion, look):
     return lambda body: numpy.clip(numpy.array(look.tint) * shade[body], 0, 1)
 
 
-def picture_of_bodies(stage, frame, combination=None):
-    """In the colour of their material, or of the parts of a combination where the step has been split."""
-    motion = stage.motion
-    index = None if combination is None else motion.measured_index(motion.step[frame])
-    if index is None:
-        return stage.render(stage.bodies(frame, tint_of(motion, stage.look)))
-    part = motion.measured["part"][index, combination]
-    return stage.render(stage.bodies(frame, lambda body: part_colour(part[body])))
+def picture_of_bodies(stage, frame, colour=None):
+    """In the colour of their material, or in those of their parts: `colour` as of part_colouring."""
+    if colour is None:
+        return stage.render(stage.bodies(frame, tint_of(stage.motion, stage.look)))
+    return stage.render(stage.bodies(frame, lambda body: PART_COLOURS[colour[body]]))
 
 
 def picture_with_graph(stage, frame, index):
@@ -87,7 +85,7 @@ def picture_with_graph(stage, frame, index):
         stage.graph(frame, stage.motion.measured.edges(index)))
 
 
-def picture_of_parts(stage, frame, index, combination):
+def picture_of_parts(stage, frame, index, combination, colour):
     """A ball for every body, coloured by part; constraints between parts red, inside parts grey."""
     motion = stage.motion
     part = motion.measured["part"][index, combination]
@@ -95,8 +93,8 @@ def picture_of_parts(stage, frame, index, combination):
     reach = body_reach(motion)
     ball_m = 0.6 * reach
     text = "".join(
-        sphere(centres[body], ball_m[body], part_colour(part[body])) for body in range(motion.bodies))
-    stick_m = 0.065 * float(numpy.median(reach))
+        sphere(centres[body], ball_m[body], PART_COLOURS[colour[body]]) for body in range(motion.bodies))
+    stick_m = 0.07 * float(numpy.median(reach))
     cut = []
     for a, b in motion.measured.edges(index):
         if part[a] == part[b]:
@@ -104,4 +102,4 @@ def picture_of_parts(stage, frame, index, combination):
         else:
             cut.append((a, b))
     # Grey walls would only dull the colours.
-    return stage.render(text + graph(stage.camera, centres, cut, (stick_m, CUT_EDGE)), walls=False)
+    return stage.render(text + graph(stage.camera, centres, cut, (stick_m, EDGE)), walls=False)

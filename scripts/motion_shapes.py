@@ -20,6 +20,18 @@ class Geom:
     orientation: numpy.ndarray
     corners: numpy.ndarray
 
+    def outline(self):
+        """Points of the body's frame and a radius: balls of that radius at the points just hold the shape."""
+        if self.kind == "convex":
+            own, radius_m = self.corners, 0.0
+        elif self.kind == "box":
+            own, radius_m = numpy.array(list(itertools.product((-0.5, 0.5), repeat=3))) * self.size, 0.0
+        elif self.kind == "sphere":
+            own, radius_m = numpy.zeros((1, 3)), self.size[0]
+        else:
+            own, radius_m = numpy.array([[0, 0, -0.5], [0, 0, 0.5]]) * self.size[1], self.size[0]
+        return self.position + own @ rotation_matrix(self.orientation).T, float(radius_m)
+
     def reach_m(self):
         """No point of the shape is farther from the origin of its body."""
         own = {

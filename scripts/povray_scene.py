@@ -8,12 +8,14 @@ import matplotlib.image
 import numpy
 
 from cleave_results import ResultError
+from motion_colours import EDGE_CASING, EDGE_CASING_SCALE
 from motion_shapes import hull_triangles, rotation_matrix
 
 FIELD_OF_VIEW = numpy.radians(26)  # across the picture
 # Graphs are drawn as they are, but this much nearer to the eye than anything else: in front of the bodies,
 # with unchanged perspective.
 OVERLAY_SCALE = 1e-3
+CASING_SCALE = 1e-2  # of the casings of lines: behind all of these, so that crossings stay whole
 # Light that comes from the sky and from other surfaces: gathered in large pictures, a constant in small ones.
 GATHERED_LIGHT = """#version 3.7;
 global_settings {
@@ -48,13 +50,8 @@ class Camera:
         A point at (x, y, z) in the camera's frame, eye at distance D, is inside while |x - c| <= t (D - z),
         so the least distance for both edges of the picture is known without any search.
         """
-        azimuth, elevation = numpy.radians([azimuth, elevation])
-        back = numpy.array([
-            numpy.cos(elevation) * numpy.cos(azimuth),
-            numpy.cos(elevation) * numpy.sin(azimuth),
-            numpy.sin(elevation)
-        ])
-        right = numpy.array([-numpy.sin(azimuth), numpy.cos(azimuth), 0])
+        back = direction_to_eye(azimuth, elevation)
+        right = numpy.array([-numpy.sin(numpy.radians(azimuth)), numpy.cos(numpy.radians(azimuth)), 0])
         up = numpy.cross(back, right)
         depth = points @ back
         tangent = numpy.tan(FIELD_OF_VIEW / 2) / margin
@@ -70,6 +67,15 @@ class Camera:
     def povray(self, aspect):
         return (f"camera {{ location {vector(self.eye)} sky z right -{aspect:.6g}*x up y "
                 f"look_at {vector(self.target)} angle {numpy.degrees(FIELD_OF_VIEW):.6g} }}\n")
+
+
+def direction_to_eye(azimuth, elevation):
+    azimuth, elevation = numpy.radians([azimuth, elevation])
+    return numpy.array([
+        numpy.cos(elevation) * numpy.cos(azimuth),
+        numpy.cos(elevation) * numpy.sin(azimuth),
+        numpy.sin(elevation)
+    ])
 
 
 def vector(values):
@@ -149,15 +155,21 @@ def polygon(corners, colour):
 
 
 def graph(camera, centres, edges, stick, ball=None):
-    """Sticks between centres and balls at all of them, in front of all bodies; each (radius, colour)."""
-    text = ""
-    extra = "no_shadow finish { ambient 0.0 emission 0.28 diffuse 0.6 specular 0.25 } "
+    """Sticks with a casing between centres and balls at all of them; each (radius, colour)."""
+    radius_m, colour = stick
+    casing = _overlay(camera, CASING_SCALE, centres, edges, EDGE_CASING_SCALE * radius_m, EDGE_CASING,
+                      "finish { ambient 0 emission 1 diffuse 0 specular 0 } no_radiosity ")
+    extra = "finish { ambient 0.0 emission 0.28 diffuse 0.6 specular 0.25 } "
+    lines = _overlay(camera, OVERLAY_SCALE, centres, edges, radius_m, colour, extra)
     near = camera.eye + OVERLAY_SCALE * (centres - camera.eye)
-    for a, b in edges:
-        text += rod(near[a], near[b], OVERLAY_SCALE * stick[0], stick[1], extra)
-    for centre in near if ball else ():
-        text += sphere(centre, OVERLAY_SCALE * ball[0], ball[1], extra)
-    return text
+    balls = (sphere(centre, OVERLAY_SCALE * ball[0], ball[1], "no_shadow " + extra) for centre in near)
+    return casing + lines + "".join(balls if ball else ())
+
+
+def _overlay(camera, scale, centres, edges, radius_m, colour, extra):
+    near = camera.eye + scale * (centres - camera.eye)
+    return "".join(
+        rod(near[a], near[b], scale * radius_m, colour, "no_shadow " + extra) for a, b in edges)
 
 
 def render(text, width, height):

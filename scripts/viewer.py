@@ -20,16 +20,15 @@ import numpy
 
 from cleave_results import ResultError
 from motion import NO_PART, load_motions
-from motion_colours import EDGE, NODE, part_colour
+from motion_colours import EDGE, EDGE_CASING, EDGE_CASING_SCALE, INNER_EDGE, NODE, PART_COLOURS
 from motion_looks import Extent, ground_polygons, look_of
 from motion_shapes import hull_triangles
-from povray_scene import FIELD_OF_VIEW, Camera
+from part_colouring import colour_sequence
+from povray_scene import direction_to_eye
 
 SOURCES = pathlib.Path(__file__).resolve().parent / "viewer"
 PAGE_BYTES = 30e6  # recordings are thinned to about this much
-PART_COLOURS = 96
-VIEW_MARGIN = 1.25
-VIEW_ASPECT = 1.4  # width / height that the first view is made for; wider windows show more at the sides
+FIELD_OF_VIEW = 19  # degrees, from the lower to the upper edge
 NO_MOTION = ("<p class=\"cleave-message\">No motion recorded: there is no motion.h5. "
              "<code>cleave run --record-motion</code> writes one.</p>\n")
 
@@ -50,6 +49,7 @@ def viewer_section(directory, autofocus=False, page_bytes=PAGE_BYTES):
 def viewer_page(directory, **options):
     section = viewer_section(directory, autofocus=True, **options)
     return ("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
             "<title>cleave: recorded motion</title>\n"
             f"<link rel=\"icon\" href=\"data:,\">\n</head>\n<body>\n{section}</body>\n</html>\n")
 
@@ -104,6 +104,7 @@ def pack(motion, stride):
     origin, unit, position = _quantized_positions(motion.position[frames])
     parts, no_part = _part_codes(measured["part"][kept])
     edges = [measured.edges(index) for index in kept]
+    part_colour, island_colour = _colours(motion, kept, edges)
     residual_range, residual = _magnitude_codes(measured["residual_m_per_s"][kept])
     impulse_range, impulse = _magnitude_codes(measured["largest_impulse_n_s"][kept])
     arrays = {
@@ -116,6 +117,8 @@ def pack(motion, stride):
         "firstEdge": numpy.concatenate([[0], numpy.cumsum([len(each) for each in edges])]).astype("<i4"),
         "edge": numpy.concatenate([*edges, numpy.zeros((0, 2))]).astype("<u2"),
         "part": parts,
+        "partColour": part_colour,
+        "islandColour": island_colour,
         "residual": residual,
         "impulse": impulse,
         "curveStep": measured.step.astype("<i4"),
@@ -141,12 +144,15 @@ def pack(motion, stride):
         },
         "geoms": [_geom(geom) for geom in motion.geoms if geom.body >= 0],
         "ground": _ground(motion, extent),
-        "view": _view(motion, extent),
+        "view": _view(look_of(motion), extent),
         "node_radius_m": extent.node_radius_m(motion),
-        "part_colours": [numpy.round(part_colour(part), 4).tolist() for part in range(PART_COLOURS)],
+        "part_colours": PART_COLOURS,
         "plain_colour": look_of(motion).tint,
         "node_colour": NODE,
         "edge_colour": EDGE,
+        "edge_casing_colour": EDGE_CASING,
+        "edge_casing_scale": EDGE_CASING_SCALE,
+        "inner_edge_colour": INNER_EDGE,
         **_ramp(),
         "note": _note(motion, stride, unit),
     }
@@ -155,7 +161,7 @@ def pack(motion, stride):
 
 
 def _settling_frames(motion):
-    """Some frames that the first view holds. What falls from far above need not be in it."""
+    """Some frames whose bodies set the size of ground and shadows; in the first ones they may be far above."""
     last = len(motion.step) - 1
     return numpy.linspace(last // 6, last, 12).astype(int)
 
@@ -196,6 +202,17 @@ def _quantized_orientations(orientation):
 
 def _differences(codes):
     return numpy.concatenate([codes[:1], codes[1:] - codes[:-1]])
+
+
+def _colours(motion, kept, edges):
+    """Indices in PART_COLOURS of the parts of every combination (k, c, n) and of the islands (k, n)."""
+    centres = motion.position[numpy.searchsorted(motion.step, motion.measured.step[kept])].astype(float)
+    part, island = motion.measured["part"][kept], motion.measured.island[kept]
+    colour = numpy.zeros(part.shape, "u1")
+    for combination in range(part.shape[1]):
+        of_parts = colour_sequence(part[:, combination], edges, centres)
+        colour[:, combination] = numpy.reshape(of_parts, part[:, combination].shape)
+    return colour, numpy.reshape(colour_sequence(island, edges, centres), island.shape).astype("u1")
 
 
 def _part_codes(part):
@@ -240,21 +257,14 @@ def _ground(motion, extent):
     } for _, corners, normal in ground]
 
 
-def _view(motion, extent):
-    look, centre = look_of(motion), (extent.low + extent.high) / 2
-    radius = float((numpy.linalg.norm(extent.points - centre, axis=1) + extent.radii).max())
-    camera = Camera.around(extent.points,
-                           extent.radii,
-                           look.azimuth,
-                           look.elevation,
-                           VIEW_ASPECT,
-                           margin=VIEW_MARGIN)
+def _view(look, extent):
+    """Where the eye stands as seen from the bodies; the page moves it to where it just holds them."""
+    centre = (extent.low + extent.high) / 2
     return {
-        "field_of_view": numpy.degrees(2 * numpy.arctan(numpy.tan(FIELD_OF_VIEW / 2) / VIEW_ASPECT)),
-        "eye_m": camera.eye.tolist(),
-        "target_m": camera.target.tolist(),
+        "field_of_view": FIELD_OF_VIEW,
+        "back": direction_to_eye(*(look.run_eye or look.eye)).tolist(),
         "centre_m": centre.tolist(),
-        "radius_m": radius,
+        "radius_m": float((numpy.linalg.norm(extent.points - centre, axis=1) + extent.radii).max()),
     }
 
 

@@ -58,11 +58,7 @@ class Browser:
         self._session = self.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log"):
             self.send(f"{domain}.enable")
-        self.send("Emulation.setDeviceMetricsOverride",
-                  width=width,
-                  height=height,
-                  deviceScaleFactor=1,
-                  mobile=False)
+        self.resize(width, height)
 
     def __enter__(self):
         return self
@@ -115,6 +111,13 @@ class Browser:
                 str(part.get("value", part.get("description"))) for part in parameters["args"]))
         elif method == "Log.entryAdded" and parameters["entry"]["level"] == "error":
             self.problems.append(parameters["entry"]["text"])
+
+    def resize(self, width, height):
+        self.send("Emulation.setDeviceMetricsOverride",
+                  width=width,
+                  height=height,
+                  deviceScaleFactor=1,
+                  mobile=False)
 
     def open(self, path):
         self.send("Page.navigate", url=pathlib.Path(path).resolve().as_uri())

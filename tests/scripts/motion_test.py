@@ -9,7 +9,6 @@ import numpy
 
 from cleave_results import ResultError
 from motion import find_recordings, load_motion
-from motion_colours import part_colour
 from motion_shapes import (conjugate, hull_triangles, multiply, plane_polygons, relative_pose,
                            rotation_matrix, world_pose)
 
@@ -17,6 +16,18 @@ from motion_shapes import (conjugate, hull_triangles, multiply, plane_polygons, 
 def random_turns(count, seed=1):
     turns = numpy.random.default_rng(seed).normal(size=(count, 4))
     return turns / numpy.linalg.norm(turns, axis=1)[:, None]
+
+
+def support_m(geom, direction):
+    """How far a shape at the origin reaches in some directions."""
+    along, aside = abs(direction[:, 2]), numpy.linalg.norm(direction[:, :2], axis=1)
+    return {
+        "box": lambda: abs(direction) @ geom.size / 2,
+        "sphere": lambda: geom.size[0],
+        "capsule": lambda: geom.size[0] + along * geom.size[1] / 2,
+        "cylinder": lambda: geom.size[0] * aside + along * geom.size[1] / 2,
+        "convex": lambda: (geom.corners @ direction.T).max(axis=0),
+    }[geom.kind]()
 
 
 class ReadTest(unittest.TestCase):
@@ -145,6 +156,19 @@ class GeometryTest(unittest.TestCase):
                 found += normal @ (a - middle) / 6
             self.assertAlmostEqual(found, volume)
 
+    def test_outlines_hold_their_shapes_and_not_much_more(self):
+        with tempfile.TemporaryDirectory() as directory:
+            geoms = load_motion(motion_data.write_motion(directory)).geoms[:-1]
+        directions = random_turns(200, 9)[:, :3]
+        directions /= numpy.linalg.norm(directions, axis=1)[:, None]
+        for geom in geoms:
+            points, radius_m = geom.outline()
+            outline = (points @ directions.T).max(axis=0) + radius_m
+            shape = support_m(geom, directions @ rotation_matrix(geom.orientation))
+            shape = shape + directions @ geom.position
+            self.assertLess((shape - outline).max(), 1e-9, geom.kind)
+            self.assertLess((outline - shape).max(), 0.21 if geom.kind == "cylinder" else 1e-9, geom.kind)
+
     def test_points_in_general_position(self):
         corners = numpy.random.default_rng(8).normal(size=(20, 3))
         triangles = hull_triangles(corners)
@@ -172,15 +196,6 @@ class GeometryTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as directory:
             floor = load_motion(motion_data.write_motion(directory)).geoms[-1]
         self.assertEqual(len(plane_polygons([floor], numpy.ones(3), 2 * numpy.ones(3))[0]), 0)
-
-
-class ColourTest(unittest.TestCase):
-
-    def test_parts_of_a_picture_differ(self):
-        colours = numpy.array([part_colour(part) for part in range(24)])
-        self.assertTrue(((colours >= 0) & (colours <= 1)).all())
-        distance = numpy.linalg.norm(colours[:, None] - colours, axis=-1) + 9 * numpy.eye(24)
-        self.assertGreater(distance.min(), 0.08)
 
 
 if __name__ == "__main__":

@@ -11,9 +11,10 @@ from synthetic import run_script
 
 from cleave_results import ResultError
 from motion import load_motion
-from motion_colours import EDGE, NODE, part_colour
-from motion_pictures import CUT_EDGE, Stage, picture_of_bodies, picture_of_parts, picture_with_graph
-from povray_scene import Camera, render
+from motion_colours import EDGE, NODE, PART_COLOURS
+from motion_pictures import Stage, picture_of_bodies, picture_of_parts, picture_with_graph
+from picture_sheets import cells_of, colours_of_cells
+from povray_scene import CONSTANT_LIGHT, Camera, graph, render
 
 SIZE = (160, 130)
 LAST = motion_data.STEPS - 1
@@ -57,14 +58,26 @@ class PictureTest(Scratch):
     def test_parts_have_their_colours_and_cut_edges_are_red(self):
         motion = self.motion()
         stage = Stage(motion, [LAST], SIZE)
-        picture = picture_of_parts(stage, LAST, 9, 0)  # two parts
+        picture = picture_of_parts(stage, LAST, 9, 0, motion.measured["part"][9, 0])  # two parts
         for part in (0, 1):
-            self.assertGreater(hue_share(picture, part_colour(part)), 5e-3)
-        self.assertGreater(hue_share(picture, CUT_EDGE), 2e-3)
+            self.assertGreater(hue_share(picture, PART_COLOURS[part]), 5e-3)
+        self.assertGreater(hue_share(picture, EDGE), 2e-3)
         motion.measured["part"][9, 0] = 0
-        whole = picture_of_parts(stage, LAST, 9, 0)
-        self.assertLess(hue_share(whole, part_colour(1)), 1e-3)
-        self.assertLess(hue_share(whole, CUT_EDGE), 1e-4)
+        whole = picture_of_parts(stage, LAST, 9, 0, motion.measured["part"][9, 0])
+        self.assertLess(hue_share(whole, PART_COLOURS[1]), 1e-3)
+        self.assertLess(hue_share(whole, EDGE), 1e-4)
+
+    def test_edges_have_a_casing_that_is_wider_than_they_are(self):
+        stage = Stage(self.motion(), [LAST], SIZE)
+        black, grey = (0, 0, 0), "background { srgb <0.5, 0.5, 0.5> } "
+        centres = stage.camera.target + numpy.array([(-0.5, 0, 0), (0.5, 0, 0)])
+        picture = render(CONSTANT_LIGHT + stage.camera.povray(stage.aspect) + grey +
+                         graph(stage.camera, centres, [(0, 1)], (0.05, black)), *SIZE)
+        column = picture[:, SIZE[0] // 2].mean(axis=-1)
+        line, casing = column < 0.25, column > 0.9
+        self.assertGreater(line.sum(), 2)
+        self.assertGreater(casing.sum(), line.sum() / 2)
+        self.assertTrue(casing[line.argmax() - 2] and casing[len(line) - line[::-1].argmax() + 1])
 
     def test_the_same_recording_gives_the_same_picture(self):
         stage = Stage(self.motion(walls=True), [LAST], SIZE)
@@ -101,6 +114,16 @@ class PictureTest(Scratch):
             y = (abs(relative @ up) + radii) / (half / aspect * depth)
             self.assertLess(max(x.max(), y.max()), 1 + 1e-9)
             self.assertGreater(max(x.max(), y.max()), 1 - 1e-9)
+
+    def test_parts_of_figure_2_have_one_colour_in_all_cells(self):
+        motion = self.motion()
+        parts = numpy.arange(motion_data.BODIES) // 2
+        for position in range(15):
+            motion.measured["part"][9, position] = numpy.random.default_rng(position).permutation(9)[parts]
+        colours = colours_of_cells(motion, 9, cells_of(motion))
+        self.assertEqual(len(colours), 15)
+        for colour in colours.values():
+            numpy.testing.assert_array_equal(colour, colours["mindp", "none"])
 
     def test_what_povray_does_not_understand_is_an_error(self):
         with self.assertRaisesRegex(ResultError, "povray failed: .*rror"):

@@ -14,6 +14,18 @@ CANVAS = ".cleave-canvas"
 READY = "document.querySelector('.cleave-viewer').dataset.state === 'ready' && it().framesDrawn > 0"
 DEFINE = "window.it = () => document.querySelector('.cleave-viewer').cleaveViewer"
 
+# How far the corners of the bodies reach to the right, up, to the left and down; 1 is the edge of the canvas.
+EXTREMES = """(() => {
+    const {mesh, bones, position: at} = it().bodies, {position, skinIndex} = mesh.geometry.attributes;
+    const most = [-9, -9, -9, -9];
+    for (let i = 0; i < position.count; ++i) {
+        const bone = bones[skinIndex.getX(i)].matrixWorld;
+        at.fromBufferAttribute(position, i).applyMatrix4(bone).project(it().stage.camera);
+        [at.x, at.y, -at.x, -at.y].forEach((value, k) => most[k] = Math.max(most[k], value));
+    }
+    return most;
+})()"""
+
 
 class ViewerTest(unittest.TestCase):
 
@@ -171,7 +183,9 @@ class ViewerTest(unittest.TestCase):
         for i, picture in enumerate(pictures):
             for other in pictures[:i]:
                 self.assert_differ(picture, other)
-        self.assertEqual(legends[:2], ["one colour a part", "one colour an island"])
+        self.assertEqual(legends[:2],
+                         ["a colour a part; parts that share constraints differ",
+                          "a colour an island; near ones differ"])
         self.assertRegex(legends[2], r"m/s, logarithmic")
         self.assertRegex(legends[3], r"N s, logarithmic")
 
@@ -188,6 +202,58 @@ class ViewerTest(unittest.TestCase):
                 return Array.from({length: 6}, (_, edge) => colour.getX(4 * edge) > 3 * colour.getY(4 * edge));
             })()""")
             self.assertEqual(shown, red.tolist(), name)
+            cased = self.browser.value("""(() => {
+                const {cased} = it().graph.casings.geometry.attributes;
+                return Array.from({length: 6}, (_, edge) => cased.getX(4 * edge));
+            })()""")
+            self.assertEqual(cased, red.astype(int).tolist(), name)
+
+    def test_at_any_width_and_step_the_bodies_just_fit_the_canvas(self):
+        for width in (1280, 420):
+            self.browser.resize(width, HEIGHT)
+            self.addCleanup(self.browser.resize, WIDTH, HEIGHT)
+            self.open()
+            for key in ("End", "Home"):
+                self.browser.press(key)
+                self.settle()
+                most = self.browser.value(EXTREMES)
+                self.assertLess(max(most), 1, (width, key))
+                self.assertGreater(max(most), 0.94, (width, key))
+                tight = int(numpy.argmax(most))
+                self.assertAlmostEqual(most[tight], most[tight - 2], delta=0.01)  # the side opposite
+
+    def test_the_view_follows_the_bodies_until_it_is_turned(self):
+        self.open()
+        place = "it().stage.camera.position.toArray()"
+        at_end = self.browser.value(place)
+        self.browser.press("Home")
+        self.settle()
+        at_start = self.browser.value(place)
+        self.assertNotEqual(at_start, at_end)
+        x, y, width, height = self.browser.place(CANVAS)
+        self.browser.drag(x + width / 2, y + height / 2, x + width / 2 + 120, y + height / 2)
+        self.settle()
+        turned = self.browser.value(place)
+        self.browser.press("End")
+        self.settle()
+        self.assertEqual(self.browser.value(place), turned)
+        self.browser.press("r")
+        self.settle()
+        numpy.testing.assert_allclose(self.browser.value(place), at_end)
+
+    def test_edges_between_parts_have_a_casing(self):
+        self.open()
+        self.browser.press("End")
+        cased = self.canvas()
+        self.browser.value("(() => { it().graph.casings.visible = false; it().change(); })()")
+        bare = self.canvas()
+        white = (cased > 0.99).all(axis=-1) & ~(bare > 0.99).all(axis=-1)
+        self.assertGreater(white.mean(), 0.001)
+        # And nothing else changes: it covers no line.
+        self.assertTrue((white | (abs(cased - bare).max(axis=-1) < 0.02)).all())
+        red = (bare[..., 0] > 0.4) & (bare[..., 1:] < 0.15).all(axis=-1)
+        self.assertGreater(red.mean(), 0.001)
+        self.assertFalse((white & red).any())
 
     def test_a_slow_machine_gets_fewer_pixels_while_it_plays_and_all_of_them_afterwards(self):
         self.open()

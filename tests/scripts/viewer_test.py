@@ -15,6 +15,7 @@ from synthetic import SCRIPTS, run_script
 import viewer
 from cleave_results import ResultError
 from motion import NO_PART, load_motion
+from motion_colours import EDGE_CASING, PART_COLOURS
 
 TYPES = {"u8": "u1", "u16": "<u2", "i16": "<i2", "i32": "<i4", "f32": "<f4"}
 
@@ -77,6 +78,29 @@ class PackTest(MotionTest):
         numpy.testing.assert_array_equal(arrays["tSMs"], motion.measured["t_s_ms"].ravel())
         numpy.testing.assert_array_equal(arrays["interfaceRows"], motion.measured["interface_rows"].ravel())
         self.assertEqual(description["combinations"][-1], "pgs")
+
+    def test_colours_are_those_of_the_figures_and_follow_the_parts(self):
+        motion = self.motion()
+        part = motion.measured["part"]
+        parts = numpy.arange(motion_data.BODIES) // 2
+        for index in range(len(part)):
+            part[index, 0] = numpy.random.default_rng(index).permutation(9)[parts]
+        description, arrays = unpack(viewer.pack(motion, 1))
+        numpy.testing.assert_allclose(description["part_colours"], PART_COLOURS)
+        self.assertEqual(description["edge_casing_colour"], list(EDGE_CASING))
+        colour = arrays["partColour"].reshape(part.shape)
+        a, b = motion_data.EDGES.T
+
+        def cut(of_body):
+            return of_body[a] != of_body[b]
+
+        for index in range(len(part)):
+            numpy.testing.assert_array_equal(colour[index, 0], colour[0, 0])
+            for combination in range(15):
+                numpy.testing.assert_array_equal(cut(colour[index, combination]),
+                                                 cut(part[index, combination]))
+        island = arrays["islandColour"].reshape(motion.measured.island.shape)
+        numpy.testing.assert_array_equal(island, 0)
 
     def test_many_parts_need_wider_numbers(self):
 

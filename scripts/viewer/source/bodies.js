@@ -47,14 +47,35 @@ export class Bodies {
   colour(mode, measured, combination, body) {
     const {recording} = this;
     if (measured < 0) return this.plain;
-    if (mode === 'island') return this.ofId(recording.island[measured * recording.bodies + body]);
+    if (mode === 'island')
+      return this.partColours[recording.islandColour[measured * recording.bodies + body]];
     const code = recording.ofBody(recording[mode], measured, combination, body);
-    if (mode === 'part') return code === recording.no_part ? this.plain : this.ofId(code);
+    if (mode === 'part') {
+      const colour = recording.ofBody(recording.partColour, measured, combination, body);
+      return code === recording.no_part ? this.plain : this.partColours[colour];
+    }
     return code === 255 ? this.plain : this.ramp[code];
   }
 
-  ofId(id) {
-    return this.partColours[id % this.partColours.length];
+  // The largest value that each of some directions has over all corners of all bodies.
+  furthest(directions) {
+    const {position, skinIndex} = this.mesh.geometry.attributes, {array: at} = position;
+    const turn = new THREE.Matrix3();
+    return directions.map((direction) => {
+      // In the frame of each body, so that corners need not be moved.
+      const own = this.bones.map(
+          ({matrixWorld}) => ({
+            along: direction.clone().applyMatrix3(turn.setFromMatrix4(matrixWorld).transpose()),
+            offset: this.position.setFromMatrixPosition(matrixWorld).dot(direction),
+          }));
+      let most = -Infinity;
+      for (let i = 0; i < position.count; ++i) {
+        const {along, offset} = own[skinIndex.array[4 * i]];
+        most =
+            Math.max(most, along.x * at[3 * i] + along.y * at[3 * i + 1] + along.z * at[3 * i + 2] + offset);
+      }
+      return most;
+    });
   }
 
   // The body nearest to the eye whose surrounding sphere a ray meets; -1 for none.

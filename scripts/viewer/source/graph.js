@@ -4,16 +4,16 @@
 // is one point and a stick two triangles, so that thousands of them are quick without a graphics card too.
 import * as THREE from 'three';
 
-// Sticks inside a part. Those between parts are red and thicker, as all are of a solver that has no parts.
-const INNER = new THREE.Color(0x6f757d);
-
 export class Graph {
   constructor(recording) {
     this.recording = recording;
+    // Sticks between parts are red, thicker and cased, as all are of a solver that has no parts.
     this.edgeColour = toColour(recording.edge_colour);
+    this.innerColour = toColour(recording.inner_edge_colour);
     this.balls = makeBalls(recording);
     this.sticks = makeSticks(mostEdges(recording));
-    this.group = new THREE.Group().add(this.sticks, this.balls);
+    this.casings = makeCasings(this.sticks.geometry, recording);
+    this.group = new THREE.Group().add(this.casings, this.sticks, this.balls);
     this.point = new THREE.Vector3();
     this.cutPairs = 0;
   }
@@ -34,7 +34,7 @@ export class Graph {
   }
 
   placeSticks({array: at}, measured, combination) {
-    const {recording} = this, {start, end, colour, radius} = this.sticks.geometry.attributes;
+    const {recording} = this, {start, end, colour, radius, cased} = this.sticks.geometry.attributes;
     const first = measured < 0 ? 0 : recording.firstEdge[measured];
     const last = measured < 0 ? 0 : recording.firstEdge[measured + 1];
     const part = (body) => recording.ofBody(recording.part, measured, combination, body);
@@ -43,21 +43,22 @@ export class Graph {
     for (let edge = first; edge < last; ++edge) {
       const a = recording.edge[2 * edge], b = recording.edge[2 * edge + 1], cut = part(a) !== part(b);
       const inner = !cut && part(a) !== recording.no_part;
-      const {r, g, b: blue} = inner ? INNER : this.edgeColour;
+      const {r, g, b: blue} = inner ? this.innerColour : this.edgeColour;
       this.cutPairs += cut;
       for (const corner = i + 4; i < corner; ++i) {
         start.setXYZ(i, at[3 * a], at[3 * a + 1], at[3 * a + 2]);
         end.setXYZ(i, at[3 * b], at[3 * b + 1], at[3 * b + 2]);
         colour.setXYZ(i, r, g, blue);
         radius.setX(i, recording.node_radius_m * (cut ? 0.4 : 0.2));
+        cased.setX(i, inner ? 0 : 1);
       }
     }
     this.sticks.geometry.setDrawRange(0, 6 * (last - first));
-    for (const attribute of [start, end, colour, radius]) attribute.needsUpdate = true;
+    for (const attribute of [start, end, colour, radius, cased]) attribute.needsUpdate = true;
   }
 
   dispose() {
-    for (const {geometry, material} of [this.balls, this.sticks]) {
+    for (const {geometry, material} of [this.balls, this.sticks, this.casings]) {
       geometry.dispose();
       material.dispose();
     }
@@ -105,6 +106,16 @@ function makeBalls({bodies, node_radius_m, node_colour}) {
   return unculled(new THREE.Points(geometry, material));
 }
 
+// A corner of a stick so far aside of its axis, in the plane that faces the eye.
+const PLACE = `
+  attribute vec3 start, end;
+  attribute float radius;
+  vec4 place(float offset, out vec3 aside) {
+    vec3 from = (modelViewMatrix * vec4(start, 1.0)).xyz, to = (modelViewMatrix * vec4(end, 1.0)).xyz;
+    aside = normalize(cross(to - from, from + to) + vec3(1e-12, 0.0, 0.0));
+    return projectionMatrix * vec4(mix(from, to, position.y) + offset * aside, 1.0);
+  }`;
+
 function makeSticks(most) {
   const geometry = new THREE.BufferGeometry();
   // Of the four corners: which side of the axis, and which end.
@@ -112,21 +123,19 @@ function makeSticks(most) {
   geometry.setAttribute('position', new THREE.Float32BufferAttribute(corners, 3));
   geometry.setIndex(
       Array.from({length: most}, (_, i) => [0, 1, 2, 0, 2, 3].map((corner) => 4 * i + corner)).flat());
-  for (const [name, size] of [['start', 3], ['end', 3], ['colour', 3], ['radius', 1]])
+  for (const [name, size] of [['start', 3], ['end', 3], ['colour', 3], ['radius', 1], ['cased', 1]])
     geometry.setAttribute(name, dynamic(new THREE.BufferAttribute(new Float32Array(4 * size * most), size)));
   const material = new THREE.ShaderMaterial({
     side: THREE.DoubleSide,
     vertexShader: `
-      attribute vec3 start, end, colour;
-      attribute float radius;
+      attribute vec3 colour;
       varying vec3 tint, aside;
       varying float across;
+      ${PLACE}
       void main() {
-        vec3 from = (modelViewMatrix * vec4(start, 1.0)).xyz, to = (modelViewMatrix * vec4(end, 1.0)).xyz;
-        aside = normalize(cross(to - from, from + to) + vec3(1e-12, 0.0, 0.0));
         across = position.x;
         tint = colour;
-        gl_Position = projectionMatrix * vec4(mix(from, to, position.y) + across * radius * aside, 1.0);
+        gl_Position = place(across * radius, aside);
       }`,
     fragmentShader: `
       varying vec3 tint, aside;
@@ -139,6 +148,33 @@ function makeSticks(most) {
       }`,
   });
   return unculled(new THREE.Mesh(geometry, material));
+}
+
+// Flat and wider, drawn before all sticks: a line stays apart from parts of whatever colour, crossings stay
+// whole.
+function makeCasings(geometry, {edge_casing_colour, edge_casing_scale}) {
+  const material = new THREE.ShaderMaterial({
+    side: THREE.DoubleSide,
+    depthWrite: false,
+    uniforms: {scale: {value: edge_casing_scale}, colour: {value: toColour(edge_casing_colour)}},
+    vertexShader: `
+      attribute float cased;
+      uniform float scale;
+      ${PLACE}
+      void main() {
+        vec3 aside;
+        gl_Position = place(position.x * cased * scale * radius, aside);
+      }`,
+    fragmentShader: `
+      uniform vec3 colour;
+      void main() {
+        gl_FragColor = vec4(colour, 1.0);
+        #include <colorspace_fragment>
+      }`,
+  });
+  const mesh = new THREE.Mesh(geometry, material);
+  mesh.renderOrder = -1;
+  return unculled(mesh);
 }
 
 function dynamic(attribute) {

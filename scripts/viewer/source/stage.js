@@ -3,6 +3,7 @@ import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 
 const SKY = 0xf3f5f8;
+const MARGIN = 1.04;
 
 export class Stage {
   constructor(canvas, onChange) {
@@ -16,6 +17,7 @@ export class Stage {
     this.camera.up.set(0, 0, 1);
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.addEventListener('change', onChange);
+    this.orbit.addEventListener('start', () => this.following = false);
     this.front = new THREE.Scene();
     this.share = 1;  // of the window's pixels along each side
   }
@@ -25,20 +27,42 @@ export class Stage {
     this.world = new THREE.Scene();
     this.sun = addLights(this.world);
     this.world.add(bodies.mesh, makeGround(recording));
+    this.bodies = bodies;
     this.graph = graph;
+    this.view = recording.view;
+    this.camera.fov = recording.view.field_of_view;
+    this.following = true;  // until the user turns the view
     this.front.clear().add(graph.group);
-    this.look(recording);
+    this.light(recording.view);
   }
 
-  look({view}) {
-    const centre = new THREE.Vector3(...view.centre_m), r = view.radius_m;
-    this.orbit.target.set(...view.target_m);
-    this.camera.position.set(...view.eye_m);
-    const away = this.camera.position.distanceTo(this.orbit.target);
-    Object.assign(this.camera, {fov: view.field_of_view, near: away / 100, far: away * 20});
+  // Moves the eye to where it just holds all bodies. A corner at (x, y, z) in the eye's frame is in view
+  // while |x - c| <= t (D - z), so the least distance D for both sides of the canvas is known without any
+  // search.
+  follow() {
+    if (!this.following) return;
+    const back = new THREE.Vector3(...this.view.back);
+    const right = new THREE.Vector3(0, 0, 1).cross(back).normalize();
+    const up = back.clone().cross(right), {aspect} = this.camera;
+    const slope = Math.tan(THREE.MathUtils.degToRad(this.camera.fov / 2)) / MARGIN;
+    const sides = [[right, 1, slope * aspect], [right, -1, slope * aspect], [up, 1, slope], [up, -1, slope]];
+    const [east, west, north, south, front, rear] = this.bodies.furthest([
+      ...sides.map(([axis, sign, t]) => axis.clone().multiplyScalar(sign).addScaledVector(back, t)), back,
+      back.clone().negate()
+    ]);
+    const distance = Math.max((east + west) / (2 * slope * aspect), (north + south) / (2 * slope));
+    const target = this.orbit.target.set(0, 0, 0);
+    target.addScaledVector(right, (east - west) / 2).addScaledVector(up, (north - south) / 2);
+    this.camera.position.copy(target).addScaledVector(back, distance);
+    target.addScaledVector(back, (front - rear) / 2);  // so that the view turns about the bodies
+    const away = this.camera.position.distanceTo(target);
+    Object.assign(this.camera, {near: away / 100, far: away * 20});
     this.camera.updateProjectionMatrix();
     this.orbit.update();
+  }
 
+  light(view) {
+    const centre = new THREE.Vector3(...view.centre_m), r = view.radius_m;
     this.sun.position.set(-0.7, -0.9, 1.9).multiplyScalar(r).add(centre);
     this.sun.target.position.copy(centre);
     this.sun.target.updateMatrixWorld();

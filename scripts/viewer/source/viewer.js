@@ -95,8 +95,8 @@ export class Viewer {
       c: () => this.choose(ui.colour, 1),
       g: () => ui.graph.click(),
       r: () => {
-        this.stage.look(this.recording);
-        this.change();
+        this.stage.following = true;
+        this.repaint();
       },
     };
     if (!actions[event.key] || !this.recording) return;
@@ -199,6 +199,7 @@ export class Viewer {
       this.moved = false;
       this.measured = this.recording.measuredAt(this.frame);
       this.bodies.place(this.frame);
+      this.stage.follow();
       this.paint();
       this.graph.place(this.frame, this.measured, this.combination);
       this.plots.mark(this.recording.step[this.frame]);
@@ -238,7 +239,9 @@ export class Viewer {
   drawLegend() {
     const {colouring, recording} = this, range = recording.ranges[colouring];
     if (!range) {
-      this.ui.legend.textContent = `one colour ${colouring === 'part' ? 'a part' : 'an island'}`;
+      this.ui.legend.textContent = colouring === 'part' ?
+          'a colour a part; parts that share constraints differ' :
+          'a colour an island; near ones differ';
       return;
     }
     if (this.ui.legend.dataset.of === colouring && this.ui.legend.firstChild?.tagName === 'I') return;
