@@ -158,11 +158,11 @@ SWING = {"links": "10", "angle": "30", **STIFF}
 # and the friction bounds, predicted by a few sweeps from zero, would come out 2 to 5 % too large in every step.
 KEEP_CONTACTS = {"match-tolerance": "0.45"}
 
-# A stack is climbed in two set-ups. On its axis, as the scenes build it by default, all boxes stand straight above each
-# other and overlap by less than the surface layer, so that no contact is pushed out: in a stack at rest all rows between
-# boxes then ask for exactly the velocity they have, and rows of one face carry exactly the same. The answer is none the
-# worse for such ties, but dWorldStep gives up where a pivot meets one (scenarios/README.md). Off the axis there are none:
-# the boxes stand 1 mm beside it, each in another direction, and overlap by more than the layer.
+# A stack is climbed in two set-ups. On its axis, as the scenes build it by default, all boxes stand straight above
+# each other and overlap by less than the surface layer, so that no contact is pushed out: in a stack at rest all rows
+# between boxes then ask for exactly the velocity they have, and rows of one face carry exactly the same. The answer is
+# none the worse for such ties, but dWorldStep gives up where a pivot meets one (scenarios/README.md). Off the axis
+# there are none: the boxes stand 1 mm beside it, each in another direction, and overlap by more than the layer.
 OFF_AXIS = {"overlap-m": "1e-6", "layer-m": "5e-7", "offset-m": "1e-3"}
 
 STACKS = (
