@@ -378,8 +378,9 @@ TEST(OdeBaselines, MayConvergeTheBoundsOfAStep) {
     const CsvTable table = read_csv(directory / "out/steps.csv");
     ASSERT_EQ(table.rows.size(), 20u) << solver << ": " << result.err;
     for (std::size_t r = 0; r < table.rows.size(); ++r)
-      EXPECT_LE(std::stod(table.at(r, "residual_m_per_s")), 1e-6) << solver << ", step " << r;
-    if (solver == "ode-step") EXPECT_EQ(result.exit_code, 0) << result.err;
+      EXPECT_LE(std::stod(table.at(r, "residual_m_per_s")), solver == "ode-step" ? 1e-9 : 1e-4)
+          << solver << ", step " << r;
+    EXPECT_EQ(result.exit_code, solver == "ode-step" ? 0 : 2) << result.err;
     EXPECT_LE(std::stod(table.at(19, "bound_mismatch")), 1e-5) << solver;
   }
 }
