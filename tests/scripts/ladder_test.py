@@ -223,6 +223,13 @@ class ClosedFormTest(unittest.TestCase):
             self.assertAlmostEqual(ladder_rungs.depth_m(50, 4, settings, steps), depth, delta=1e-18)
         self.assertAlmostEqual(ladder_rungs.depth_m(50, 4, {**settings, "erp": "0"}, 7), 7 * 1.25e-6)
 
+    def test_a_soft_stack_off_its_axis_has_no_height_for_it_leans(self):
+        soft, stiff = (self.expected("stiffness_off_axis", cfm) for cfm in ("1e-2", "1e-3"))
+        self.assertTrue(math.isnan(soft.height_m))
+        self.assertEqual(soft.depth_m, self.expected("stiffness", "1e-2").depth_m)
+        self.assertEqual(stiff.height_m, self.expected("stiffness", "1e-3").height_m)
+        self.assertFalse(math.isnan(self.expected("stiffness", "1e-2").height_m))
+
     def test_duplicates_share_the_load(self):
         once, twice = (self.expected("duplicates", copies) for copies in "12")
         weight = 1e-5 * 9.81 / 60 / (0.2 * 4)
