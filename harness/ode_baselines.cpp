@@ -49,10 +49,11 @@ class FeedbackWorld {
     for (std::size_t j = 0; j < joints_.size(); ++j) dJointSetFeedback(joints_[j], &feedback_[j]);
   }
 
-  void add_contacts(const StepProblem& problem, std::span<const RowRange> rows) {
+  void add_contacts(const StepProblem& problem, std::span<const RowRange> rows, OdeFriction friction) {
+    const auto surface = friction == OdeFriction::pyramid ? pyramid : force_limits;
     for (std::size_t k = 0; k < contacts_.size(); ++k) {
       const std::size_t constraint = joints_.size() + k;
-      add_contact(contacts_[k], force_limits(problem, rows[constraint]), &feedback_[constraint]);
+      add_contact(contacts_[k], surface(problem, rows[constraint]), &feedback_[constraint]);
     }
   }
 
@@ -72,21 +73,30 @@ class FeedbackWorld {
 
  private:
   // Largest friction forces along t1 and t2, N; zero where there are no friction rows.
-  static std::array<double, 2> force_limits(const StepProblem& problem, const RowRange& rows) {
+  static dSurfaceParameters force_limits(const StepProblem& problem, const RowRange& rows) {
     std::array<double, 2> limits{};
     for (int r = rows.begin; r < rows.end; ++r)
       if (problem.row_kind[r] == RowKind::friction) {
         assert(problem.lower[r] == -problem.upper[r]);
         limits.at(r - rows.begin - 1) = problem.upper[r] / problem.h_s;
       }
-    return limits;
+    dSurfaceParameters surface{};
+    surface.mode = dContactMu2;
+    surface.mu = limits[0];
+    surface.mu2 = limits[1];
+    return surface;
   }
 
-  void add_contact(const ContactPoint& point, const std::array<double, 2>& limits, dJointFeedback* feedback) {
+  static dSurfaceParameters pyramid(const StepProblem& problem, const RowRange& rows) {
+    dSurfaceParameters surface{};
+    surface.mode = dContactApprox1;
+    surface.mu = rows.count() > 1 ? problem.friction_coefficient[rows.begin + 1] : 0;
+    return surface;
+  }
+
+  void add_contact(const ContactPoint& point, const dSurfaceParameters& surface, dJointFeedback* feedback) {
     dContact contact{};
-    contact.surface.mode = dContactMu2;
-    contact.surface.mu = limits[0];
-    contact.surface.mu2 = limits[1];
+    contact.surface = surface;
     std::ranges::copy(point.position_m, contact.geom.pos);
     std::ranges::copy(point.normal, contact.geom.normal);
     contact.geom.depth = point.depth_m;
@@ -141,7 +151,7 @@ class OdeSolver : public OdeBaseline {
     FeedbackWorld feedback(*world_, contacts_, erp_, cfm_);
     const std::vector<RowRange> rows =
         rows_by_constraint(problem, world_->content().joints.size() + contacts_.size());
-    feedback.add_contacts(problem, rows);
+    feedback.add_contacts(problem, rows, options_.friction);
     if (quick_) {
       dWorldSetQuickStepNumIterations(feedback.world().world(), options_.quickstep_iterations);
       dRandSetSeed(kQuickStepSeed);

@@ -2,13 +2,19 @@
 //
 // They are ordinary solvers of --solver, but a StepProblem alone does not make an ODE world: they also need
 // the world and the contacts that the problem was extracted from. For every solve the world is rebuilt with
-// the step's ERP and CFM, each contact becomes a contact joint whose friction bounds are the problem's, as
-// constant force limits (dContactMu2 without dContactApprox1: mu = hi_t1 / h, mu2 = hi_t2 / h), and ODE
-// solves
+// the step's ERP and CFM, each contact becomes a contact joint, and ODE solves
 //
 //     (J M^-1 J^T + C) lambda_f = (b - J v0) / h,   lambda_f = lambda / h within its bounds:
 //
-// the very same MLCP, row by row. The forces f that joint feedback returns are turned back into impulses, the
+// row by row. Friction bounds are, by --ode-friction:
+//
+//   limits   the problem's, as constant force limits (dContactMu2 without dContactApprox1: mu = hi_t1 / h,
+//            mu2 = hi_t2 / h): the very same MLCP
+//   pyramid  ODE's own (dContactApprox1): mu times the normal force that dWorldStep finds without friction,
+//            and of the moment in dWorldQuickStep. dWorldStep then takes up all normal rows before any
+//            friction row. The same MLCP as long as no friction row is at its bound.
+//
+// The forces f that joint feedback returns are turned back into impulses, the
 // lambda with J_c^T lambda = h f over the rows of each constraint c. What ODE makes of it is judged as any
 // other solver's result. t_s is the time of dWorldStep or dWorldQuickStep, which contains ODE's own rows and
 // its integration, not the rebuilding.
@@ -31,9 +37,12 @@
 
 namespace cleave {
 
+enum class OdeFriction { limits, pyramid };
+
 struct OdeBaselineOptions {
   int quickstep_iterations = 20;  // >= 1
   int step_max_rows = 500;        // >= 0; ode-step refuses more
+  OdeFriction friction = OdeFriction::limits;
 };
 
 class OdeBaseline : public StepSolver {

@@ -123,6 +123,10 @@ std::vector<OptionSpec> experiment_options() {
               at(&RunOptions::ode_baseline, &OdeBaselineOptions::quickstep_iterations)),
       integer("ode-step-max-rows", kNonNegative, "ode-step refuses a step of more rows: its time explodes",
               at(&RunOptions::ode_baseline, &OdeBaselineOptions::step_max_rows)),
+      word("ode-friction", {"limits", "pyramid"},
+           "of ODE's own solvers. limits: the problem's bounds as force limits; pyramid: bounds that ODE "
+           "finds",
+           at(&RunOptions::ode_baseline, &OdeBaselineOptions::friction)),
       name("advance", solver_choices(), "solver that advances the world in lockstep",
            at(&RunOptions::advance)),
       word("mode", {"lockstep", "separate"},

@@ -51,11 +51,13 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
     // One constraint row per joint direction, contact normal and friction direction.
     StepProblem problem = extract(world, contacts, options_.extract, memory);
     common.t_extract_ms = watch.lap_ms();
+
+    // Converged bounds are found by solving, with ODE's own solvers too.
+    show(world, contacts, combinations, advancing);
+    watch.lap_ms();
     predict_bounds(problem, advancing);
     common.t_predict_ms = watch.lap_ms();
     common.ode_messages = world.take_message_count();
-
-    show(world, contacts, combinations, advancing);
 
     // Every combination splits the bodies and solves the same problem.
     Measured measured;

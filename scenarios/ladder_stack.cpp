@@ -10,10 +10,8 @@ namespace {
 
 constexpr double kEdge_m = 1;
 constexpr double kMass_kg = 1;
-constexpr double kOverlap_m = 1e-7;  // of touching faces, so that contacts exist from the first step on
-// Overlap up to here is not pushed out. Without it a stiff stack would be pushed apart to the last digit,
-// lose contact and fall by g h^2.
-constexpr double kLayer_m = 1e-6;
+// The golden angle: no two boxes of a stack stand off its axis in the same direction.
+constexpr double kTurn_rad = 2.399963229728653;
 
 // What the scenes of this file differ in. Masses from the bottom up.
 struct StackPlan {
@@ -58,13 +56,20 @@ class LadderStack : public Scene {
 
   SceneContent build(dWorldID world, dSpaceID space, const SceneSettings& settings, std::uint64_t) override {
     const StackPlan plan = make_plan_(settings);
-    dWorldSetContactSurfaceLayer(world, kLayer_m);
+    // Overlap up to here is not pushed out. Without it a stiff stack would be pushed apart to the last digit,
+    // lose contact and fall by g h^2.
+    dWorldSetContactSurfaceLayer(world, settings.number("layer-m"));
+    const double overlap_m = settings.number("overlap-m"), offset_m = settings.number("offset-m");
     SceneBuilder builder(world, space);
     const double half = plan.angle_rad / 2;
     const std::array<double, 3> up{std::sin(plan.angle_rad), 0, std::cos(plan.angle_rad)};
     for (std::size_t i = 0; i < plan.mass_kg.size(); ++i) {
-      const double height_m = kEdge_m / 2 - kOverlap_m + static_cast<double>(i) * (kEdge_m - kOverlap_m);
-      const Pose pose{{height_m * up[0], 0, height_m * up[2]}, {std::cos(half), 0, std::sin(half), 0}};
+      const double place = static_cast<double>(i);
+      const double height_m = kEdge_m / 2 - overlap_m + place * (kEdge_m - overlap_m);
+      const double down_m = offset_m * std::cos(place * kTurn_rad);
+      const double side_m = offset_m * std::sin(place * kTurn_rad);
+      const Pose pose{{height_m * up[0] + down_m * up[2], side_m, height_m * up[2] - down_m * up[0]},
+                      {std::cos(half), 0, std::sin(half), 0}};
       builder.add_box(pose, plan.mass_kg[i], {kEdge_m, kEdge_m, kEdge_m}, plan.copies);
     }
     builder.add_plane(up, 0);
@@ -85,26 +90,39 @@ SceneParameter mass_ratio_parameter(const char* ratio) {
   return {"mass-ratio", Type::number, ratio, 1, 1e9, {}, "kg of a heavy body; the light ones have 1 kg"};
 }
 
+// What all of them have besides their own: how the boxes touch at the start.
+std::vector<SceneParameter> with_touch(std::vector<SceneParameter> own) {
+  own.push_back({"overlap-m", Type::number, "1e-7", 0, 1e-6, {}, "m by which faces overlap at the start"});
+  own.push_back({"layer-m", Type::number, "1e-6", 0, 1e-2, {}, "m of overlap that is not pushed out"});
+  own.push_back({"offset-m", Type::number, "0", 0, 0.1, {}, "m by which boxes stand off the axis"});
+  return own;
+}
+
 }  // namespace
 
 std::vector<SceneParameter> ladder_stack_parameters() {
-  return {
-      boxes_parameter("10"),
-      {"copies", Type::integer, "1", 1, 4, {}, "coincident shapes of every box: contacts reported again"}};
+  return with_touch(
+      {boxes_parameter("10"),
+       {"copies", Type::integer, "1", 1, 4, {}, "coincident shapes of every box: contacts reported again"}});
 }
 
 std::vector<SceneParameter> ladder_heavy_top_parameters() {
-  return {boxes_parameter("5"), mass_ratio_parameter("1e6")};
+  return with_touch({boxes_parameter("5"), mass_ratio_parameter("1e6")});
 }
 
 std::vector<SceneParameter> ladder_alternating_parameters() {
-  return {boxes_parameter("10"), mass_ratio_parameter("1000")};
+  return with_touch({boxes_parameter("10"), mass_ratio_parameter("1000")});
 }
 
 std::vector<SceneParameter> ladder_incline_parameters() {
-  return {
-      boxes_parameter("1"),
-      {"angle", Type::number, "15", 0, 80, {}, "degrees from the level (a plane) or from hanging (a chain)"}};
+  return with_touch({boxes_parameter("1"),
+                     {"angle",
+                      Type::number,
+                      "15",
+                      0,
+                      80,
+                      {},
+                      "degrees from the level (a plane) or from hanging (a chain)"}});
 }
 
 std::unique_ptr<Scene> make_ladder_stack() { return std::make_unique<LadderStack>(plain_plan); }

@@ -1,4 +1,5 @@
-// Boxes on top of each other on a plane, level or inclined, whose masses make the step hard to solve.
+// Boxes on top of each other on a plane, level or inclined, whose masses make the step hard to solve. All of
+// them also have --overlap-m, --layer-m and --offset-m, which say how the boxes touch at the start.
 #pragma once
 
 #include <memory>

@@ -16,7 +16,7 @@ from ladder_rungs import ENERGY_LIMIT, HEIGHT_LIMIT_M, NAN, OVERSHOOT, PENETRATI
 WORST_FIRST = ("crashed", "timeout", "out_of_memory", "diverged", "refused", "not_converged", "skipped", "ok")
 MEASURED = ("residual_m_per_s", "iterations", "joint_drift_m", "max_penetration_m", "energy_excess_j",
             "height_error_m", "t_s_ms", "sag_m", "drift_error_m", "rows", "ode_messages")
-COLUMNS = ("rung", "parameter", "value", "solver", "status", *MEASURED[:7], "first_failing", *MEASURED[7:],
+COLUMNS = ("rung", "setup", "parameter", "value", "solver", "status", *MEASURED[:7], "first_failing", *MEASURED[7:],
            "physics", "first_failing_physics", "steps", "status_reason")
 
 
@@ -131,7 +131,7 @@ def measured(cell, rows):
 
 
 def physics(cell, rows):
-    """'ok', or which of the rung's limits the motion breaks."""
+    """'ok', or which of the rung's limits the motion breaks, or that the time stepping breaks them by itself."""
     aim, values = expected(cell, rows), measured(cell, rows)
     gain = max(row.number("energy_excess_j") / max(1, row.number("kinetic_energy_j")) for row in rows)
     broken = {
@@ -140,6 +140,8 @@ def physics(cell, rows):
         "penetration": values["max_penetration_m"] > OVERSHOOT * aim.depth_m + PENETRATION_LIMIT_M,
         "energy": not gain <= ENERGY_LIMIT,
     }
+    if any(broken.values()) and float(cell.rung.settings(cell.value)["dt"]) > aim.longest_step_s:
+        return "step_too_long"  # no solution of the steps would hold
     return "+".join(name for name, is_broken in broken.items() if is_broken) or "ok"
 
 

@@ -6,7 +6,8 @@ A contact or joint row with compliance C = cfm / h gives way under its share of 
     depth = (cfm F h / c) * (1 - (1 - erp)^n) / erp        (erp = 0: the last factor is n)
 
 which tends to cfm F h / (erp c). This sag belongs to the problem; only what goes beyond it is a solver's error.
-Faces overlap by up to 1e-6 m by construction, which is not counted.
+Faces overlap by up to 1e-6 m by construction, which is not counted. All closed forms are those of the time stepping
+itself (velocities first, then positions with them), not of continuous time, so h may be any size in them.
 """
 import dataclasses
 import math
@@ -20,6 +21,7 @@ HEIGHT_LIMIT_M = 1e-3
 PENETRATION_LIMIT_M = 1e-2
 DRIFT_LIMIT_M = 1e-3
 MOVING_DRIFT_LIMIT_M = 5e-2  # links that turn and collide open their joints by themselves
+LEANING_SAG_M = 0.05  # of a stack off its axis: on contacts softer than that it slowly leans over
 OVERSHOOT = 2  # of a spring that is loaded suddenly, in units of its sag
 ENERGY_LIMIT = 1e-9  # times max(1 J, kinetic energy)
 NAN = math.nan
@@ -34,6 +36,7 @@ class Expected:
     joint_gap_m: float = NAN  # of the widest joint
     depth_m: float = NAN  # of the deepest contact
     drift_limit_m: float = DRIFT_LIMIT_M
+    longest_step_s: float = math.inf  # at which the time stepping is stable, whoever solves the steps
 
 
 Settings = typing.Dict[str, str]  # options of cleave, those of the scene among them
@@ -50,15 +53,18 @@ class Rung:
     scene: str
     fixed: Settings
     expect: typing.Callable[[Settings, int], Expected]
+    setup: str = "-"  # of a stack: on_axis or off_axis
+    derived: typing.Callable[[Settings], Settings] = lambda settings: {}  # options that follow from the value
 
     def settings(self, value):
-        return {
+        settings = {
             "dt": repr(1 / 60),
             "cfm": "1e-5",
             "erp": "0.2",
             "mu": "0.5",
             **self.fixed, self.parameter: value
         }
+        return {**settings, **self.derived(settings)}
 
 
 def depth_m(force_n, rows, settings, steps):
@@ -80,7 +86,10 @@ def stack(masses_kg, settings, steps):
         depth_m(force, CONTACTS * (copies if i == 0 else copies**2), settings, steps)
         for i, force in enumerate(weights_above(masses_kg))
     ]
-    return Expected(height_m=len(masses_kg) - 0.5 - sum(depths), sag_m=sum(depths), depth_m=max(depths))
+    sag_m = sum(depths)
+    leans = float(settings.get("offset-m", "0")) > 0 and sag_m > LEANING_SAG_M
+    height_m = NAN if leans else len(masses_kg) - 0.5 - sag_m
+    return Expected(height_m=height_m, sag_m=sag_m, depth_m=max(depths))
 
 
 def equal_stack(settings, steps):
@@ -114,6 +123,22 @@ def hanging_chain(settings, steps):
     return Expected(height_m=BOB_M - sum(gaps), sag_m=sum(gaps), joint_gap_m=max(gaps))
 
 
+def longest_step_s(settings):
+    """Rods of mass m and length l on joints, taut under T, swing against each other at up to sqrt(12 T / (m l)): their
+    highest mode is a zigzag. The force that drives them back is the joints' at the positions of the step's start, so
+    symplectic Euler carries it up to h omega = 2. T is that of the top joint at rest."""
+    tension_n = GRAVITY_M_PER_S2 * (int(settings["links"]) - 1 + float(settings["mass-ratio"]))
+    return math.sqrt(LINK_M / (3 * tension_n))
+
+
+def half_the_longest_step(settings):
+    return {"dt": repr(min(float(settings["dt"]), longest_step_s(settings) / 2))}
+
+
+def swinging_chain(settings, _steps):
+    return Expected(joint_gap_m=0, drift_limit_m=MOVING_DRIFT_LIMIT_M, longest_step_s=longest_step_s(settings))
+
+
 def moving_joints(_settings, _steps):
     return Expected(joint_gap_m=0, drift_limit_m=MOVING_DRIFT_LIMIT_M)
 
@@ -131,8 +156,20 @@ QUICK_CFM = ("1e-2", "1e-5", "1e-8", "1e-12", "1e-14", "0")
 RATIO = ("1", "10", "100", "1e3", "1e4", "1e5", "1e6")
 QUICK_RATIO = ("1", "100", "1e4", "1e6")
 STIFF = {"cfm": "1e-10"}
+SWING = {"links": "10", "angle": "30", **STIFF}
 
-RUNGS = (
+# A box that slides at 3 m/s moves by more than the default tolerance in a step. Its contacts would be taken for new
+# ones, and the friction bounds, predicted by a few sweeps from zero, would come out 2 to 5 % too large in every step.
+KEEP_CONTACTS = {"match-tolerance": "0.45"}
+
+# A stack is climbed in two set-ups. On its axis, as the scenes build it by default, all boxes stand straight above
+# each other and overlap by less than the surface layer, so that no contact is pushed out: in a stack at rest all rows
+# between boxes then ask for exactly the velocity they have, and rows of one face carry exactly the same. The answer is
+# none the worse for such ties, but dWorldStep gives up where a pivot meets one (scenarios/README.md). Off the axis
+# there are none: the boxes stand 1 mm beside it, each in another direction, and overlap by more than the layer.
+OFF_AXIS = {"overlap-m": "1e-6", "layer-m": "5e-7", "offset-m": "1e-3"}
+
+STACKS = (
     Rung("heavy_top", "mass-ratio", RATIO, QUICK_RATIO, "ladder_heavy_top", {
         "boxes": "5",
         **STIFF
@@ -141,39 +178,61 @@ RUNGS = (
         "boxes": "10",
         **STIFF
     }, alternating),
+    Rung("stiffness", "cfm", CFM, QUICK_CFM, "ladder_stack", {"boxes": "10"}, equal_stack),
+    Rung("push_out", "erp", ("0", "0.1", "0.2", "0.4", "0.6", "0.8"), ("0", "0.2", "0.8"), "ladder_stack",
+         {"boxes": "10"}, equal_stack),
+    Rung("time_step", "dt", ("1e-4", "1e-3", "0.005", "0.01", repr(1 / 60), repr(1 / 30)),
+         ("1e-4", "1e-3", repr(1 / 60), repr(1 / 30)), "ladder_stack", {"boxes": "10"}, equal_stack),
+    Rung("contact_cap", "contact-cap", tuple("12345678"), tuple("1248"), "ladder_stack", {"boxes": "5"},
+         equal_stack),
+    Rung("duplicates", "copies", tuple("1234"), tuple("123"), "ladder_stack", {"boxes": "5"}, equal_stack),
+    Rung("stack", "boxes", ("5", "10", "15", "20", "30", "40", "50"), ("5", "10", "20", "50"), "ladder_stack",
+         {}, equal_stack),
+)
+
+
+def both_setups(rung):
+    off_axis = {**rung.fixed, **OFF_AXIS}
+    return (dataclasses.replace(rung, setup="on_axis"),
+            dataclasses.replace(rung, name=f"{rung.name}_off_axis", fixed=off_axis, setup="off_axis"))
+
+
+OTHERS = (
     Rung("chain_bob", "mass-ratio", RATIO, QUICK_RATIO, "ladder_chain", {
         "links": "10",
         **STIFF
     }, hanging_chain),
-    Rung("chain_swing", "mass-ratio", RATIO, QUICK_RATIO, "ladder_chain", {
-        "links": "10",
-        "angle": "30",
-        **STIFF
-    }, moving_joints),
+    Rung("chain_swing", "mass-ratio", RATIO, QUICK_RATIO, "ladder_chain", SWING, swinging_chain),
+    Rung("chain_swing_short_step",
+         "mass-ratio",
+         RATIO,
+         QUICK_RATIO,
+         "ladder_chain",
+         SWING,
+         swinging_chain,
+         derived=half_the_longest_step),
     Rung("chain_links", "links", ("10", "30", "100", "300", "1000", "2000"), ("10", "100", "300"),
          "ladder_chain", {
              "mass-ratio": "1000",
              **STIFF
          }, hanging_chain),
-    Rung("stiffness", "cfm", CFM, QUICK_CFM, "ladder_stack", {"boxes": "10"}, equal_stack),
     Rung("stiff_pile", "cfm", CFM, QUICK_CFM, "rock_pile", {"bodies": "20"}, no_closed_form),
-    Rung("push_out", "erp", ("0", "0.1", "0.2", "0.4", "0.6", "0.8"), ("0", "0.2", "0.8"), "ladder_stack",
-         {"boxes": "10"}, equal_stack),
-    Rung("time_step", "dt", ("1e-4", "1e-3", "0.005", "0.01", repr(1 / 60), repr(1 / 30)),
-         ("1e-4", "1e-3", repr(1 / 60), repr(1 / 30)), "ladder_stack", {"boxes": "10"}, equal_stack),
     Rung("friction", "mu", ("0", "0.1", "0.2", "0.3", "0.5", "1", "10", "1e3", "1e6"),
-         ("0", "0.2", "0.5", "10", "1e6"), "ladder_incline", {"angle": "15"}, incline),
-    Rung("contact_cap", "contact-cap", tuple("12345678"), tuple("1248"), "ladder_stack", {"boxes": "5"},
-         equal_stack),
-    Rung("duplicates", "copies", tuple("1234"), tuple("123"), "ladder_stack", {"boxes": "5"}, equal_stack),
+         ("0", "0.2", "0.5", "10", "1e6"), "ladder_incline", {
+             "angle": "15",
+             **KEEP_CONTACTS
+         }, incline),
     Rung("loop", "links", ("3", "4", "6", "8", "16", "32"), ("3", "4", "8", "16"), "ladder_loop",
          {"cfm": "1e-9"}, moving_joints),
     Rung("rigid_loop", "links", ("3", "4", "6", "8", "16", "32"), ("3", "4", "8"), "ladder_loop",
          {"cfm": "0"}, moving_joints),
-    Rung("stack", "boxes", ("5", "10", "15", "20", "30", "40", "50"), ("5", "10", "20", "50"), "ladder_stack",
-         {}, equal_stack),
     Rung("no_contact", "boxes", ("1", "10"), ("1", "10"), "ladder_free", {}, free_fall),
 )
+
+RUNGS = (*(rung for rung_of_stack in STACKS for rung in both_setups(rung_of_stack)), *OTHERS)
+
+# More rows than by default, for what is refused says nothing about ODE.
+ODE_STEP = ("--solver", "ode-step", "--advance", "ode-step", "--ode-step-max-rows", "1000")
 
 SOLVERS = {
     "exact": ("--solver", "exact", "--advance", "exact"),
@@ -182,7 +241,8 @@ SOLVERS = {
         f"pgs_{sweeps}": ("--solver", "pgs", "--advance", "pgs", "--sweeps", str(sweeps))
         for sweeps in (20, 200, 2000)
     },
-    "ode-step": ("--solver", "ode-step", "--advance", "ode-step"),
+    "ode-step": ODE_STEP,
+    "ode-step_pyramid": (*ODE_STEP, "--ode-friction", "pyramid"),
     **{
         f"ode-quickstep_{count}": ("--solver", "ode-quickstep", "--advance", "ode-quickstep", "--quickstep-iterations",
                                    str(count))

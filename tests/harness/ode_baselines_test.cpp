@@ -280,6 +280,27 @@ TEST(OdeBaselines, ForcesAndModesOfTheBodiesAreCopied) {
   EXPECT_LE(largest_gap(solved.solution.velocity, solved.verdict.velocity), 1e-11);
 }
 
+// The problem's bounds are set to nothing, so that what ODE finds by itself is seen. Both tangents of this
+// plane follow its slope or its level.
+TEST(OdeBaselines, FrictionIsTheProblemsOrOdesOwn) {
+  const auto world = make_world("ladder_incline", {{"angle", "15"}}, 1);
+  Step step = take_step(*world, {.mu = 0.2});
+  for (int r = 0; r < step.problem.row_count(); ++r)
+    if (step.problem.row_kind[r] == RowKind::friction) step.problem.lower[r] = step.problem.upper[r] = 0;
+  const double angle_rad = std::acos(-1.0) / 12;
+  const auto speed = [&](const char* solver, OdeFriction friction) {
+    OdeBaselineOptions options{.quickstep_iterations = 3000};
+    options.friction = friction;
+    const std::vector<double> v = solve_with_ode(solver, step, options).solution.velocity;
+    return v[0] * std::cos(angle_rad) - v[2] * std::sin(angle_rad);
+  };
+  const double pull = 9.81 * std::sin(angle_rad), hold = 0.2 * 9.81 * std::cos(angle_rad);
+  for (const char* solver : {"ode-step", "ode-quickstep"}) {
+    EXPECT_NEAR(speed(solver, OdeFriction::limits), pull * kStep_s, 1e-4) << solver;
+    EXPECT_NEAR(speed(solver, OdeFriction::pyramid), (pull - hold) * kStep_s, 1e-4) << solver;
+  }
+}
+
 TEST(OdeBaselines, RefuseWithAReason) {
   const auto world = make_joined(kJoints[1], false, 1);
   const Step step = take_step(*world, {});
@@ -344,6 +365,24 @@ TEST(OdeBaselines, AreOrdinarySolversOfARun) {
     }
   }
   EXPECT_GE(silent_rows, 36);
+}
+
+// The bounds of a step are then found by solving it, with its own contacts.
+TEST(OdeBaselines, MayConvergeTheBoundsOfAStep) {
+  for (const std::string solver : {"ode-step", "ode-quickstep"}) {
+    const TemporaryDirectory directory;
+    const ProgramResult result =
+        run_cleave({"run", "--scene", "ladder_incline", "--mu", "0.2", "--steps", "20", "--solver", solver,
+                    "--advance", solver, "--friction", "box-converged", "--quickstep-iterations", "3000",
+                    "--out", directory / "out"});
+    const CsvTable table = read_csv(directory / "out/steps.csv");
+    ASSERT_EQ(table.rows.size(), 20u) << solver << ": " << result.err;
+    for (std::size_t r = 0; r < table.rows.size(); ++r)
+      EXPECT_LE(std::stod(table.at(r, "residual_m_per_s")), solver == "ode-step" ? 1e-9 : 1e-4)
+          << solver << ", step " << r;
+    EXPECT_EQ(result.exit_code, solver == "ode-step" ? 0 : 2) << result.err;
+    EXPECT_LE(std::stod(table.at(19, "bound_mismatch")), 1e-5) << solver;
+  }
 }
 
 TEST(OdeBaselines, ARefusedWorldLeavesRowsWithTheReason) {

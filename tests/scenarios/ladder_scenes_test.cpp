@@ -46,6 +46,28 @@ TEST(LadderScenes, OverlapUpToTheSurfaceLayerIsLeftAlone) {
   EXPECT_LE(layer_m, 1e-6);
 }
 
+TEST(LadderScenes, HowTheBoxesTouchIsAnOptionOfEveryStack) {
+  for (const std::string scene :
+       {"ladder_stack", "ladder_heavy_top", "ladder_alternating", "ladder_incline"}) {
+    SceneWorld world(scene_named(scene),
+                     {{"boxes", "4"}, {"overlap-m", "1e-6"}, {"layer-m", "5e-7"}, {"offset-m", "0.01"}});
+    const std::vector<dBodyID>& bodies = world.content().bodies;
+    EXPECT_EQ(dWorldGetContactSurfaceLayer(dBodyGetWorld(bodies[0])), 5e-7) << scene;
+    EXPECT_NEAR(world.collide().largest_depth_m, 1e-6, 1e-9) << scene;
+    const dReal* rotation = dBodyGetRotation(bodies[0]);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      dVector3 local;
+      dMultiply1_331(local, rotation, dBodyGetPosition(bodies[i]));
+      EXPECT_NEAR(std::hypot(local[0], local[1]), 0.01, 1e-12) << scene << ' ' << i;
+      EXPECT_NEAR(local[2], 0.5 - 1e-6 + static_cast<double>(i) * (1 - 1e-6), 1e-12) << scene << ' ' << i;
+      if (i == 0) continue;
+      dVector3 before;
+      dMultiply1_331(before, rotation, dBodyGetPosition(bodies[i - 1]));
+      EXPECT_GT(std::hypot(local[0] - before[0], local[1] - before[1]), 0.01) << scene << ' ' << i;
+    }
+  }
+}
+
 TEST(LadderIncline, TheBoxLiesFlatOnThePlane) {
   for (const std::string angle : {"0", "15", "80"}) {
     SceneWorld world(scene_named("ladder_incline"), {{"angle", angle}, {"boxes", "2"}});

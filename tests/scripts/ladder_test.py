@@ -1,5 +1,6 @@
 """scripts/ladder with a stand-in for the program, and its closed forms."""
 import csv
+import math
 import os
 import pathlib
 import signal
@@ -37,7 +38,7 @@ def row(step):
     status = {{"late": "not_converged" if step == 1 else "ok",
                "refused": "refused" if step == 0 else "skipped"}}.get(told, "ok")
     return {{"step": step, "status": status, "status_reason": "too many rows" if step == 0 else "-",
-             "residual_m_per_s": 1e-12 * step, "iterations": step, "joint_drift_m": 0, "max_penetration_m": 0,
+             "residual_m_per_s": 1e-12 * step, "iterations": step, "joint_drift_m": int(told == "open"), "max_penetration_m": 0,
              "energy_excess_j": 0, "kinetic_energy_j": 1, "last_body_z_m": fallen + (1 if told == "high" else 0),
              "t_s_ms": step, "rows": 0, "ode_messages": 1}}
 write_steps(out, [row(step) for step in range(int(given["--steps"]))])
@@ -92,8 +93,8 @@ class LadderTest(unittest.TestCase):
         rows, calls = self.rows(), self.calls()
         self.assertEqual(len(rows), 2 * len(ladder_rungs.SOLVERS))
         self.assertEqual(tuple(rows[0]), COLUMNS)
-        self.assertEqual({(row["status"], row["physics"], row["first_failing"])
-                          for row in rows}, {("ok", "ok", "-")})
+        self.assertEqual({(row["status"], row["physics"], row["first_failing"], row["setup"])
+                          for row in rows}, {("ok", "ok", "-", "-")})
         for call in calls:
             words = call.split()
             self.assertEqual(words[words.index("--solver") + 1], words[words.index("--advance") + 1])
@@ -127,6 +128,28 @@ class LadderTest(unittest.TestCase):
         self.assertEqual(found["ode-step"]["residual_m_per_s"], "nan")
         self.assertEqual([row["first_failing"] for row in self.rows()], ["1", "1", "1", "1", "-"] * 2)
         self.assertEqual(found["ode-quickstep_20"]["first_failing_physics"], "1")
+
+    def test_a_stack_says_its_set_up_and_tells_it_to_the_program(self):
+        self.ladder("--rung", "stack,stack_off_axis", "--solver", "ode-step_pyramid")
+        self.assertEqual({(row["rung"], row["setup"])
+                          for row in self.rows()}, {("stack", "on_axis"), ("stack_off_axis", "off_axis")})
+        calls = self.calls()
+        off_axis = [call for call in calls if "--offset-m 1e-3" in call]
+        self.assertEqual(len(off_axis) * 2, len(calls))
+        for call in off_axis:
+            self.assertIn("--overlap-m 1e-6 --layer-m 5e-7", call)
+        for call in calls:
+            self.assertIn("--ode-friction pyramid", call)
+
+    def test_what_a_too_long_step_breaks_is_named_so(self):
+        rungs = ("--rung", "chain_swing,chain_swing_short_step", "--solver", "exact")
+        self.ladder(*rungs, told="exact=open")
+        found = {(row["rung"], row["value"]): row["physics"] for row in self.rows()}
+        self.assertEqual(found["chain_swing", "1"], "drift")
+        self.assertEqual(found["chain_swing", "100"], "step_too_long")
+        self.assertEqual(found["chain_swing_short_step", "100"], "drift")
+        self.ladder(*rungs, "--steps", 5)
+        self.assertEqual({row["physics"] for row in self.rows()}, {"ok"})
 
     def test_an_inexact_advance_between_exact_rows_counts(self):
         self.ladder("--solver", "exact", told="exact=inexact")
@@ -200,6 +223,13 @@ class ClosedFormTest(unittest.TestCase):
             self.assertAlmostEqual(ladder_rungs.depth_m(50, 4, settings, steps), depth, delta=1e-18)
         self.assertAlmostEqual(ladder_rungs.depth_m(50, 4, {**settings, "erp": "0"}, 7), 7 * 1.25e-6)
 
+    def test_a_soft_stack_off_its_axis_has_no_height_for_it_leans(self):
+        soft, stiff = (self.expected("stiffness_off_axis", cfm) for cfm in ("1e-2", "1e-3"))
+        self.assertTrue(math.isnan(soft.height_m))
+        self.assertEqual(soft.depth_m, self.expected("stiffness", "1e-2").depth_m)
+        self.assertEqual(stiff.height_m, self.expected("stiffness", "1e-3").height_m)
+        self.assertFalse(math.isnan(self.expected("stiffness", "1e-2").height_m))
+
     def test_duplicates_share_the_load(self):
         once, twice = (self.expected("duplicates", copies) for copies in "12")
         weight = 1e-5 * 9.81 / 60 / (0.2 * 4)
@@ -210,6 +240,39 @@ class ClosedFormTest(unittest.TestCase):
         self.assertAlmostEqual(self.expected("friction", "0.5", cfm="0").height_m, 0.4829629, places=6)
         slow = self.expected("friction", "0", steps=60, cfm="0").height_m
         self.assertAlmostEqual(slow, 0.4829629 - 9.81 * 0.0669873 * 61 * 60 / 3600 / 2, places=5)
+
+    def test_the_longest_step_of_a_swinging_chain(self):
+        """The highest mode of a taut row of rods, by Rayleigh's quotient of the zigzag."""
+        links, mass, length, tension = 10, 1.0, 0.3, 9.81 * 109
+        amplitude = 0.01
+        bent = tension * (2 * amplitude)**2 / (2 * length) * links
+        moving = mass * amplitude**2 / 3 / 2 * links
+        rung = next(rung for rung in ladder_rungs.RUNGS if rung.name == "chain_swing_short_step")
+        step_s = float(rung.settings("100")["dt"])
+        self.assertAlmostEqual(step_s * math.sqrt(bent / moving), 1)
+        self.assertAlmostEqual(self.expected("chain_swing", "100").longest_step_s, 2 * step_s)
+        self.assertEqual(float(rung.settings("1")["dt"]), ladder_rungs.longest_step_s(rung.settings("1")) / 2)
+        self.assertEqual(rung.settings("1")["links"], "10")
+
+    def test_a_short_step_is_never_longer_than_the_usual_one(self):
+        self.assertEqual(
+            ladder_rungs.half_the_longest_step({
+                "links": "1",
+                "mass-ratio": "0.01",
+                "dt": "0.01"
+            }), {"dt": "0.01"})
+
+    def test_every_stack_has_both_set_ups_which_differ_in_nothing_else(self):
+        rungs = {rung.name: rung for rung in ladder_rungs.RUNGS}
+        self.assertEqual(len(rungs), len(ladder_rungs.RUNGS))
+        stacks = [rung for rung in rungs.values() if rung.setup == "on_axis"]
+        self.assertEqual(len(stacks), 8)
+        for rung in stacks:
+            twin = rungs[rung.name + "_off_axis"]
+            self.assertEqual(twin.setup, "off_axis")
+            self.assertEqual({**rung.settings("1"), **ladder_rungs.OFF_AXIS}, twin.settings("1"))
+            self.assertEqual((rung.values, rung.quick, rung.scene, rung.expect),
+                             (twin.values, twin.quick, twin.scene, twin.expect))
 
     def test_a_chain_is_open_widest_at_its_top(self):
         aim = self.expected("chain_bob", "1e6")
