@@ -30,9 +30,10 @@ check_steps() {
   ((measure_every <= steps)) || fail "--measure-every is $measure_every, expected at most --steps, $steps"
 }
 
-# say_time WORDS: how long it will take, before it begins.
+# say_time MINUTES: how long it will take on 2 cores, before it begins.
 say_time() {
-  echo "${0##*/}: takes about $*, and up to 3 minutes more where cleave is not built" >&2
+  echo "${0##*/}: takes about $(($1 > 1 ? $1 : 1)) min on 2 cores, up to 3 more where cleave is not built; what is" \
+    "complete is kept" >&2
 }
 
 # find_program: sets program, to CLEAVE_PROGRAM or to what is built now.
