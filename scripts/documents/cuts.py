@@ -41,7 +41,8 @@ def ablation(stored):
 
 
 def _change(found, choice):
-    return f"{100 * (found[choice] / found['default'] - 1):+.0f} %"
+    change = round(100 * (found[choice] / found["default"] - 1))
+    return f"{change:+d} %" if change else ""
 
 
 def ablation_facts(stored):
