@@ -16,7 +16,7 @@ def number(value, digits=3):
 
 
 def percent(share):
-    return f"{round(100 * share)} %"
+    return "-" if math.isnan(share) else f"{round(100 * share)} %"
 
 
 def table(header, rows):

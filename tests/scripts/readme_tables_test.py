@@ -104,6 +104,23 @@ class BlocksTest(unittest.TestCase):
         with self.assertRaisesRegex(NoResults, "`scripts/two_threads` makes `results/two_threads.csv`"):
             speed.two_threads(self.stored)
 
+    def test_table1_facts_name_the_lowest_the_failed_and_the_stalls(self):
+        stored_data.full(self.root)
+        made = paper_table.table1_facts(self.stored)
+        self.assertIn("| Rock Pile | bfs+fm, 1.12 | mix+fm, 79.6 | ", made)
+        self.assertIn("All 600 rows are exact: their largest residual is 1.0e-12 m/s", made)
+        self.assertIn("50 % of the rows of Rock Pile", made)
+        self.assertIn("0 % of the rows of Chain Drop", made)
+        stored_data.full(self.root, "not_converged")
+        self.assertIn("599 of 600 rows are exact", paper_table.table1_facts(self.stored))
+        self.assertIn("1 of 10 steps failed", paper_table.table1(self.stored))
+
+    def test_speed_and_accuracy_are_those_of_the_fastest_direct_solver_and_of_finite_rows(self):
+        stored_data.solver_runs(self.root)
+        made = speed.speed_accuracy(self.stored)
+        self.assertIn("`monolithic` solves a step exactly in 4.00 ms", made)
+        self.assertIn("| 10 | 1.00 | 0.250 | 0.100 |\n| 100 | 10.0 | 2.50 | 0.0100 |", made)
+
     def test_two_threads_are_medians_over_the_rounds(self):
         stored_data.two_threads(self.root)
         stored_data.write_provenance(self.root, "two_threads.csv")
@@ -158,7 +175,7 @@ class TextTest(unittest.TestCase):
     def test_numbers(self):
         self.assertEqual([text.number(value) for value in (0, 0.01234, 4.5678, 789.4, 12345.6, 1.234e-13, float("nan"))],
                          ["0", "0.0123", "4.57", "789", "12346", "1.2e-13", "-"])
-        self.assertEqual((text.percent(0.456), text.percent(-0.001)), ("46 %", "0 %"))
+        self.assertEqual([text.percent(share) for share in (0.456, -0.001, float("nan"))], ["46 %", "0 %", "-"])
 
     def test_lists(self):
         self.assertEqual([text.listed(words) for words in ((), "a", "ab", "abc")], ["none", "a", "a and b", "a, b and c"])

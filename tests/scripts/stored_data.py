@@ -2,7 +2,9 @@
 import csv
 import json
 
-from synthetic import COMBINATIONS
+from synthetic import COMBINATIONS, matrix, write_steps
+
+from cleave_results import SCENES
 
 BUILD = {"git_hash": "0123456789abcdef", "git_dirty": "false"}
 MACHINE = {"cpu_model": "Some CPU", "cores": 2}
@@ -64,3 +66,26 @@ def partition_benchmark(root):
     entries = [{"name": f"{graph}/{name}_median", "aggregate_name": "median", "cpu_time": 12.345, "interface_rows": 480}
                for graph in ("pile_200", "pile_600") for name in names]
     (root / "partition_benchmark.json").write_text(json.dumps({"benchmarks": entries}))
+
+
+def full(root, spoiled=None):
+    """bfs+fm is made the fastest of every scene; every other step of rock_pile falls back."""
+    for scene in SCENES:
+        rows = [row | {"fallbacks": int(scene == "rock_pile" and row["step"] % 100 == 0)} for row in matrix(scene)]
+        for row in rows:
+            if (row["partitioner"], row["refiner"]) == ("bfs", "fm"):
+                row["t_s_ms"] = 1
+        if spoiled and scene == "rock_pile":
+            rows[0]["status"] = spoiled
+        write_steps(root / "full" / scene, rows)
+
+
+def solver_runs(root):
+    """A direct solver of 4 ms, another of 5 ms, and sweeps that take a tenth of a millisecond each."""
+    folder, row = root / "report" / "solvers" / "rocks_200", matrix("rock_pile")[0]
+    write_steps(folder / "direct", [row | {"solver": solver, "t_s_ms": time}
+                                    for solver, time in (("schur", 5), ("monolithic", 4))])
+    for sweeps in (10, 100):
+        rows = [row | {"solver": "pgs", "status": "not_converged", "t_s_ms": sweeps / 10, "residual_m_per_s": 1 / sweeps},
+                row | {"solver": "pgs", "status": "diverged", "t_s_ms": "nan", "residual_m_per_s": "nan"}]
+        write_steps(folder / f"pgs_{sweeps}", rows)
