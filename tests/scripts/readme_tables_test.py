@@ -11,6 +11,7 @@ from synthetic import ROOT, run_script
 from cleave_results import ResultError
 from documents import cuts, markers, paper_claims, paper_table, sets, speed, stability, text
 from documents.stored import NoResults, Stored
+from reference_stages import STAGES
 
 DOCUMENTS = ("README.md", "partition/README.md", "solver/README.md", "results/README.md", "results/table1.md")
 MEASURED = re.compile(r"\d ?(?:ms|µs|us|%|Gflop/s)\b|\d %")
@@ -27,6 +28,12 @@ class CheckoutTest(unittest.TestCase):
         modules = (cuts, paper_claims, paper_table, sets, speed, stability)
         self.assertEqual(sorted(sum(found, [])), sorted(name for module in modules for name in module.BLOCKS))
         self.assertTrue(all(found))
+
+    def test_the_commands_told_are_those_that_remake_the_set(self):
+        commands = {"scripts/" + " ".join(stage.command).partition(" --out ")[0].replace(" {report}", "")
+                    for stage in STAGES if stage.runs or stage.files}
+        self.assertEqual(set(sets.COMMANDS.values()), commands)
+        self.assertEqual(list(sets.COMMANDS), list(sets.SETS))
 
     def test_no_measured_number_stands_outside_of_the_generated_parts(self):
         for name in DOCUMENTS:
