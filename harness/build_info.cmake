@@ -1,7 +1,7 @@
 # Writes the header that names the sources of this build. Run at every build, so that the manifest names the commit that
 # was compiled and not the one that was configured; the file is touched only when something changed.
 #
-#   cmake -DSOURCE_DIR=... -DOUTPUT=... -DCOMPILE_FLAGS=... -DBUILD_TYPE=... -P build_info.cmake
+#   cmake -DSOURCE_DIR=... -DOUTPUT=... -DVERSION=... -DCOMPILE_FLAGS=... -DBUILD_TYPE=... -P build_info.cmake
 cmake_minimum_required(VERSION 3.22)
 set(GIT_HASH unknown)
 set(GIT_DIRTY unknown)
@@ -25,6 +25,7 @@ string(REPLACE "\\" "\\\\" COMPILE_FLAGS "${COMPILE_FLAGS}")
 string(REPLACE "\"" "\\\"" COMPILE_FLAGS "${COMPILE_FLAGS}")
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT [[
 #pragma once
+#define CLEAVE_VERSION "@VERSION@"
 #define CLEAVE_GIT_HASH "@GIT_HASH@"
 #define CLEAVE_GIT_DIRTY "@GIT_DIRTY@"
 #define CLEAVE_COMPILE_FLAGS "@COMPILE_FLAGS@"

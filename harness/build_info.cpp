@@ -17,6 +17,7 @@
 #if __has_include("cleave_build_info.h")
 #include "cleave_build_info.h"
 #else
+#define CLEAVE_VERSION "unknown"
 #define CLEAVE_GIT_HASH "unknown"
 #define CLEAVE_GIT_DIRTY "unknown"
 #define CLEAVE_COMPILE_FLAGS "unknown"
@@ -48,7 +49,14 @@ std::string dotted(int major, int minor, int patch) {
 }  // namespace
 
 BuildInfo build_info() {
-  return {CLEAVE_GIT_HASH, CLEAVE_GIT_DIRTY, CLEAVE_COMPILER, CLEAVE_COMPILE_FLAGS, CLEAVE_BUILD_TYPE};
+  return {CLEAVE_VERSION,  CLEAVE_GIT_HASH,      CLEAVE_GIT_DIRTY,
+          CLEAVE_COMPILER, CLEAVE_COMPILE_FLAGS, CLEAVE_BUILD_TYPE};
+}
+
+std::string version_text(const BuildInfo& build) {
+  const std::string state =
+      build.git_dirty == "true" ? "dirty" : (build.git_dirty == "false" ? "clean" : "unknown");
+  return "cleave " + build.version + " (commit " + build.git_hash + ", " + state + ") " + build.compiler;
 }
 
 std::vector<std::pair<std::string, std::string>> library_versions() {

@@ -10,6 +10,7 @@ namespace cleave {
 
 // Of the sources at build time: "unknown" where they are no git checkout.
 struct BuildInfo {
+  std::string version;
   std::string git_hash;
   std::string git_dirty;  // "true", "false" or "unknown"
   std::string compiler;
@@ -17,6 +18,9 @@ struct BuildInfo {
   std::string build_type;
 };
 BuildInfo build_info();
+
+// "cleave 0.2.0 (commit 0123..., clean) GCC 12.2.0"; "dirty" where the sources differ from the commit.
+std::string version_text(const BuildInfo& build);
 
 // Name and version as the library reports it at run time where it can, else as its headers do.
 std::vector<std::pair<std::string, std::string>> library_versions();

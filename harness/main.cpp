@@ -35,16 +35,10 @@ void reject_extras(const CLI::App& app) {
   }
 }
 
-std::string version_text() {
-  const BuildInfo build = build_info();
-  return "cleave " + build.git_hash + (build.git_dirty == "true" ? " with local changes, " : ", ") +
-         build.compiler;
-}
-
 int run_program(int argc, char** argv) {
   CLI::App app("Graph partitioning for parallel direct solvers of rigid-body steps", "cleave");
   app.allow_extras();
-  app.set_version_flag("--version", [] { return version_text(); });
+  app.set_version_flag("--version", [] { return version_text(build_info()); });
   std::map<const CLI::App*, std::function<int()>> actions;
   const std::vector<std::string> arguments(argv, argv + argc);
   for (const Command& command : commands()) {

@@ -31,6 +31,7 @@ void add_options(JsonWriter& json, const std::vector<OptionValue>& options) {
 void add_build(JsonWriter& json) {
   const BuildInfo build = build_info();
   json.begin_object("build");
+  json.field("version", build.version);
   json.field("git_hash", build.git_hash);
   json.field("git_dirty", build.git_dirty);
   json.field("compiler", build.compiler);

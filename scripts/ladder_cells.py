@@ -1,5 +1,6 @@
 """One cell of the ladder: a rung's value and a solver, run in a process of its own and judged."""
 import dataclasses
+import hashlib
 import json
 import math
 import os
@@ -10,6 +11,7 @@ import tempfile
 
 import ladder_rungs
 from cleave_results import ResultError, load_manifest, load_steps
+from run_key import build_key, difference
 from ladder_rungs import ENERGY_LIMIT, HEIGHT_LIMIT_M, NAN, OVERSHOOT, PENETRATION_LIMIT_M, SOLVERS
 
 # A cell has the status of its worst step; rows after a world has stopped say nothing new.
@@ -150,16 +152,17 @@ class Journal:
 
     def __init__(self, path, program):
         self.path = path
-        # A rebuilt program or other judges run everything again.
-        self.stamp = " ".join(f"{file} {os.stat(file).st_mtime_ns}"
-                              for file in (program, __file__, ladder_rungs.__file__))
+        # Another build or machine, or other judges, run everything again.
+        self.key = build_key(program)
+        self.judges = hashlib.sha256(b"".join(
+            pathlib.Path(file).read_bytes() for file in (__file__, ladder_rungs.__file__))).hexdigest()
         self.finished = {}
         for line in path.read_text().splitlines() if path.exists() else ():
             try:
                 entry = json.loads(line)
             except ValueError:
                 continue  # the line that was being written when the ladder was stopped
-            if entry["program"] == self.stamp:
+            if entry.get("judges") == self.judges and difference(entry["key"], self.key) is None:
                 self.finished[entry["arguments"]] = entry
 
     def find(self, cell, timeout_s):
@@ -170,7 +173,8 @@ class Journal:
 
     def add(self, cell, timeout_s, result):
         entry = {
-            "program": self.stamp,
+            "key": self.key,
+            "judges": self.judges,
             "arguments": " ".join(cell.arguments),
             "timeout_s": timeout_s,
             "result": result

@@ -30,13 +30,19 @@ check_steps() {
   ((measure_every <= steps)) || fail "--measure-every is $measure_every, expected at most --steps, $steps"
 }
 
+# say_time MINUTES: how long it will take on 2 cores, before it begins.
+say_time() {
+  echo "${0##*/}: takes about $(($1 > 1 ? $1 : 1)) min on 2 cores, up to 3 more where cleave is not built; what is" \
+    "complete is kept" >&2
+}
+
 # find_program: sets program, to CLEAVE_PROGRAM or to what is built now.
 find_program() {
   if [[ -n ${CLEAVE_PROGRAM:-} ]]; then
     program=$CLEAVE_PROGRAM
     [[ -x $program ]] || fail "CLEAVE_PROGRAM is '$program', which cannot be run"
   else
-    "$root/scripts/setup" --preset release
+    "$root/scripts/setup" --preset release --target cleave
     program=$root/build/release/cleave
   fi
 }
@@ -47,12 +53,12 @@ keep_or_run() {
   local arguments=(run "${@:3}" --steps "$steps" --measure-every "$measure_every" --repeats "$repeats"
     --threads "$threads" --seed "$seed")
   if [[ $force == no ]]; then
-    text=$("$root/scripts/is_complete" "$directory" "${arguments[@]}") || code=$?
+    text=$("$root/scripts/is_complete" "$program" "$directory" "${arguments[@]}") || code=$?
     case $code in
       0 | 2) echo "$label is kept: $text; --force runs it again" >&2; return "$code" ;;
       3) fail "$text; give another --out, or --force to overwrite" ;;
-      1) code=0 ;;
-      *) fail "scripts/is_complete stopped with exit code $code" ;;
+      1) code=0; [[ -z $text ]] || echo "$label: $text" >&2 ;;
+      *) fail "scripts/is_complete stopped with exit code $code: $text" ;;
     esac
   fi
   echo "$label: $steps steps, measured are $((steps / measure_every))" >&2

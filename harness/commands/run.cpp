@@ -1,17 +1,41 @@
 // cleave run: checks every option, then simulates and measures.
+#include <cstdio>
 #include <memory>
 
+#include "harness/build_info.h"
 #include "harness/commands/command.h"
 #include "harness/commands/run_command_line.h"
 #include "harness/commands/simulate.h"
+#include "harness/json_writer.h"
 #include "harness/options.h"
 #include "harness/output_directory.h"
 
 namespace cleave {
 namespace {
 
-int run(const std::map<std::string, std::string>& given, const std::vector<std::string>& argv) {
+// What a manifest of this run would be known by: the experiment, its threads, the build and the machine.
+std::string key_text(const RunOptions& options) {
+  const BuildInfo build = build_info();
+  const MachineInfo machine = machine_info();
+  JsonWriter json;
+  json.begin_object();
+  json.field("run_id", run_id(options));
+  json.field("threads", options.threads);
+  json.field("git_hash", build.git_hash);
+  json.field("git_dirty", build.git_dirty);
+  json.field("cpu_model", machine.cpu_model);
+  json.field("cores", machine.cores);
+  json.end_object();
+  return json.text();
+}
+
+int run(const std::map<std::string, std::string>& given, bool print_key,
+        const std::vector<std::string>& argv) {
   const RunOptions options = parse_run_options(given);
+  if (print_key) {
+    std::printf("%s", key_text(options).c_str());
+    return kExitOk;
+  }
   std::vector<std::string> files = {"steps.csv"};
   if (options.record_motion) files.push_back("motion.h5");
   check_output_directory(options.out, options.force, files);
@@ -22,9 +46,11 @@ int run(const std::map<std::string, std::string>& given, const std::vector<std::
 
 std::function<int()> declare_run(CLI::App& app, const std::vector<std::string>& argv) {
   const auto given = std::make_shared<std::map<std::string, std::string>>();
+  const auto print_key = std::make_shared<bool>(false);
   declare_run_options(app, *given);
   declare_scene_options(app, *given);
-  return [given, argv] { return run(*given, argv); };
+  app.add_flag("--print-key", *print_key, "run nothing; print what its results would be known by");
+  return [given, print_key, argv] { return run(*given, *print_key, argv); };
 }
 
 }  // namespace cleave

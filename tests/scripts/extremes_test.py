@@ -2,10 +2,14 @@
 import unittest
 
 from stand_in import StandInCase
+from synthetic import ROOT
 
 # Only the columns and fields that the scripts look at: there are many runs.
-STAND_IN = """#!/usr/bin/python3
+STAND_IN = f"""#!/usr/bin/python3
 import json, os, pathlib, sys
+sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+import stand_in_key
+stand_in_key.answer()
 given = dict(zip(sys.argv[2::2], sys.argv[3::2]))
 with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write(" ".join(sys.argv[1:]) + "\\n")
@@ -14,11 +18,11 @@ if code not in (0, 2) and code < 1000:
     sys.exit(code)
 out, rows = pathlib.Path(given["--out"]), int(given["--steps"]) // int(given["--measure-every"])
 out.mkdir(parents=True, exist_ok=True)
-row = ("not_converged" if code == 2 else "ok") + f",{code - 1000 if code >= 1000 else 20}\\n"
+row = ("not_converged" if code == 2 else "ok") + f",{{code - 1000 if code >= 1000 else 20}}\\n"
 (out / "steps.csv").write_text("status,factorizations\\n" + rows * row)
-(out / "manifest.json").write_text(json.dumps({
-    "state": "complete", "argv": sys.argv, "utc_end": "2026-01-01T00:00:00Z",
-    "result": {"rows": rows, "rows_ok": 0 if code == 2 else rows}}))
+(out / "manifest.json").write_text(json.dumps({{
+    **stand_in_key.manifest_entries(), "state": "complete", "argv": sys.argv, "utc_end": "2026-01-01T00:00:00Z",
+    "result": {{"rows": rows, "rows_ok": 0 if code == 2 else rows}}}}))
 sys.exit(code if code == 2 else 0)
 """
 

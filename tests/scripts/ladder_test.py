@@ -1,5 +1,6 @@
 """scripts/ladder with a stand-in for the program, and its closed forms."""
 import csv
+import json
 import math
 import os
 import pathlib
@@ -8,6 +9,7 @@ import subprocess
 import tempfile
 import time
 import unittest
+import unittest.mock
 
 from synthetic import ROOT, SCRIPTS, run_script
 
@@ -18,6 +20,8 @@ from ladder_cells import COLUMNS
 STAND_IN = f"""#!/usr/bin/python3
 import os, pathlib, signal, sys, time
 sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+import stand_in_key
+stand_in_key.answer()
 from synthetic import write_manifest, write_steps
 given = dict(zip(sys.argv[2::2], sys.argv[3::2]))
 with open(os.environ["STAND_IN_LOG"], "a") as log:
@@ -166,9 +170,14 @@ class LadderTest(unittest.TestCase):
         self.ladder("--solver", "exact,pgs_20", "--timeout", 20)
         self.assertEqual(len(self.calls()), 2)
         self.assertEqual([row["status"] for row in self.rows()], ["ok"] * 4)
-        self.program.touch()
+
+    def test_cells_of_another_build_machine_or_of_a_dirty_one_are_run_again(self):
         self.ladder("--solver", "exact")
-        self.assertEqual(len(self.calls()), 2)
+        for change in ({"git_hash": "f" * 40}, {"cpu_model": "Other CPU"}, {"cores": 8}, {"git_dirty": "true"}):
+            self.calls()
+            with unittest.mock.patch.dict(os.environ, STAND_IN_KEY=json.dumps(change)):
+                self.assertNotIn("kept", self.ladder("--solver", "exact").stderr)
+            self.assertEqual(len(self.calls()), 2, change)
 
     def test_an_interrupted_ladder_leaves_no_table_and_goes_on(self):
         result = self.ladder("--solver", "exact,pgs_20", "--jobs", 1, told="pgs=interrupt", code=130)

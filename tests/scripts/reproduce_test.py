@@ -8,6 +8,8 @@ from synthetic import ROOT
 STAND_IN = f"""#!/usr/bin/python3
 import os, pathlib, sys
 sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+import stand_in_key
+stand_in_key.answer()
 from synthetic import matrix, write_manifest, write_steps
 given = dict(zip(sys.argv[2::2], sys.argv[3::2]))
 with open(os.environ["STAND_IN_LOG"], "a") as log:
@@ -20,7 +22,7 @@ rows = matrix(given["--scene"], range(every - 1, int(given["--steps"]), every))
 if code == 2:
     rows[0]["status"] = "not_converged"
 write_steps(given["--out"], rows)
-write_manifest(given["--out"], state="complete", argv=sys.argv, utc_end="2026-01-01T00:00:00Z",
+write_manifest(given["--out"], **stand_in_key.manifest_entries(), state="complete", argv=sys.argv, utc_end="2026-01-01T00:00:00Z",
                result={{"rows": len(rows), "rows_ok": sum(row["status"] == "ok" for row in rows)}})
 sys.exit(code)
 """

@@ -77,6 +77,11 @@ class SetupTest(StandInTest):
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertEqual(self.log(), ["cmake --preset release", "cmake --build --preset release"])
 
+    def test_targets_are_all_that_is_built(self):
+        self.assertEqual(self.setup_script("--target", "cleave", "--target", "solver_benchmark").returncode, 0)
+        self.assertEqual(self.log()[-1], "cmake --build --preset release --target cleave --target solver_benchmark")
+        self.assertIn("--target needs a name", self.setup_script("--target").stderr)
+
     def test_only_what_is_missing_is_installed_after_one_update(self):
         self.install([name for name in self.packages if name not in ("cmake", "libode-dev")])
         self.assertEqual(self.setup_script("--preset", "asan").returncode, 0)

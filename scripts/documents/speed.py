@@ -1,0 +1,84 @@
+"""Threads, solvers against each other, and cold starts."""
+import math
+import statistics
+
+import solver_ratios
+from documents import text
+from documents.stored import NoResults, need
+
+THREADS = ("two_threads.csv", "scripts/two_threads")
+COLD = ("cold_starts.csv", "scripts/cold_starts")
+BENCHMARK = ("solver_benchmark.json", "scripts/benchmark_solvers")
+SOLVERS = ("report/solvers/rocks_200", "scripts/report_runs --measure-every 25")
+COLD_ROWS = 1000
+
+
+def _medians(rows):
+    """{(combination, step): {threads: median t_s}}"""
+    times = {}
+    for row in rows:
+        found = times.setdefault((f"{row['partitioner']}+{row['refiner']}", int(row["step"])), {})
+        found.setdefault(int(row["threads"]), []).append(float(row["t_s_ms"]))
+    return {key: {threads: statistics.median(values) for threads, values in found.items()}
+            for key, found in times.items()}
+
+
+def two_threads(stored):
+    rows = need(stored.table(*THREADS), "two threads")
+    medians = _medians(rows)
+    steps = sorted({step for _, step in medians})
+    lines = [[f"`{name}`", *(f"{medians[name, step][1] / medians[name, step][2]:.2f}" for step in steps)]
+             for name in dict.fromkeys(name for name, _ in medians)]
+    rounds = len({row["round"] for row in rows})
+    return (f"t_s of one thread over that of two on recorded steps of Large Rock Pile, medians of {rounds} replays "
+            f"with each, in turn (`{THREADS[1]}`; {stored.origin(THREADS[0])}):\n\n" +
+            text.table(["", *(f"step {step}" for step in steps)], lines))
+
+
+def solver_benchmark(stored):
+    return (f"{stored.origin(BENCHMARK[0])}:\n\n" + solver_ratios.markdown(stored.benchmark(*BENCHMARK)))
+
+
+def cold_starts(stored):
+    rows = [row for row in need(stored.table(*COLD), "cold starts") if int(row["rows"]) >= COLD_ROWS]
+    need(rows, f"at least {COLD_ROWS} rows")
+    parts = []
+    for start in ("cold", "warm"):
+        counts = sorted(int(row[f"factorizations_{start}"]) for row in rows)
+        parts.append(f"{start}: median {statistics.median(counts):.0f}, at most {counts[-1]}, and at most 8 on "
+                     f"{sum(count <= 8 for count in counts)}")
+    return (f"Factorisations of `exact` on the {len(rows)} recorded steps of Rock Pile with at least {COLD_ROWS} rows, "
+            f"cfm 1e-5 (`{COLD[1]}`): {'; '.join(parts)}.")
+
+
+def _cost(rows):
+    """Mean time of a solve in ms and the median residual, of rows that have both."""
+    rows = [row for row in rows if math.isfinite(row.number("t_s_ms") + row.number("residual_m_per_s"))]
+    return (statistics.fmean(row.number("t_s_ms") for row in rows),
+            statistics.median(row.number("residual_m_per_s") for row in rows))
+
+
+def speed_accuracy(stored):
+    """The fastest direct solver against numbers of Gauss-Seidel sweeps: time and error."""
+    direct, sweeps = [], {}
+    for run in stored.runs(*SOLVERS):
+        name = run.steps_path.parent.name
+        if name.startswith("pgs_"):
+            sweeps[int(name.removeprefix("pgs_"))] = _cost(run.rows)
+        elif name == "direct":
+            for solver in dict.fromkeys(row["solver"] for row in run.rows):
+                rows = [row for row in run.rows if row["solver"] == solver]
+                if all(row["status"] == "ok" for row in rows):
+                    direct.append((_cost(rows)[0], solver))
+    if not direct or not sweeps:
+        raise NoResults(f"Nothing is stored yet: `{SOLVERS[1]}` makes `results/{SOLVERS[0]}`.")
+    time, solver = min(direct)
+    shown = [[count, text.number(cost), text.number(cost / time), text.number(error)]
+             for count, (cost, error) in sorted(sweeps.items())]
+    return (f"On 200 rocks, one thread, `{solver}` solves a step exactly in {text.number(time)} ms on the mean, the fastest "
+            f"of the direct solvers; projected Gauss-Seidel ({stored.origin(SOLVERS[0])}):\n\n" +
+            text.table(["sweeps", "ms", f"of the time of `{solver}`", "median residual, m/s"], shown))
+
+
+BLOCKS = {"two_threads": two_threads, "solver_benchmark": solver_benchmark, "cold_starts": cold_starts,
+          "speed_accuracy": speed_accuracy}

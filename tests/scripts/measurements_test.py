@@ -1,0 +1,155 @@
+"""scripts/two_threads, cold_starts, ablation and the benchmarks with stand-ins for the programs they run."""
+import csv
+import json
+
+from stand_in import StandInCase
+from synthetic import ROOT
+
+from documents import cuts, speed
+from documents.stored import Stored
+
+STAND_IN = f"""#!/usr/bin/python3
+import os, pathlib, sys
+sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+from synthetic import COMBINATIONS, write_steps
+words = sys.argv[1:]
+with open(os.environ["STAND_IN_LOG"], "a") as log:
+    log.write(" ".join(words) + "\\n")
+code = int(os.environ.get("STAND_IN_CODE", 0))
+if code and words[0] == "replay":
+    sys.exit("cleave replay: no" if code == 1 else code)
+out = pathlib.Path(words[words.index("--out") + 1])
+out.mkdir(parents=True, exist_ok=True)
+if words[0] == "record":
+    scene, steps = words[words.index("--scene") + 1], words[words.index("--at") + 1]
+    for step in steps.split(","):
+        (out / f"{{scene}}_step{{int(step):06}}.h5").touch()
+    sys.exit(0)
+files = [word for word in words if word.endswith(".h5")]
+assert files and all(os.path.exists(file) for file in files), files
+threads = int(words[words.index("--threads") + 1]) if "--threads" in words else 1
+names = COMBINATIONS if "all" in words else [("mix", "fm")]
+write_steps(out, [dict(step=int(file[-9:-3]), scene="s", bodies=7, partitioner=partitioner, refiner=refiner,
+                       threads=threads, rows=1200, interface_rows=50 if "whole" in words else 40, status="ok",
+                       t_s_ms=8 / threads, factorizations=9 if "--cold" in words else 2)
+                  for file in files for partitioner, refiner in names])
+"""
+
+
+class Measurement(StandInCase):
+    stand_in = STAND_IN
+
+    def stored(self):
+        return Stored(self.directory / "out")
+
+    def rows(self, name):
+        with open(self.directory / "out" / name, newline="") as file:
+            return list(csv.DictReader(file))
+
+
+class TwoThreadsTest(Measurement):
+    script = "two_threads"
+
+    def test_one_and_two_threads_take_turns_on_the_same_files(self):
+        result = self.run_it("--rounds", 3)
+        record, *replays = self.calls()
+        self.assertIn("--scene large_rock_pile --at 100,200,300,400", record)
+        self.assertEqual([call[call.index("--threads"):].split()[1] for call in replays], ["1", "2", "2", "1", "1", "2"])
+        self.assertEqual(len(self.rows("two_threads.csv")), 4 * 2 * 3)
+        self.assertIn("mix+fm step 300: 2.00", result.stdout)
+        self.assertIn("| `mix+fm` | 2.00 | 2.00 | 2.00 | 2.00 |", speed.two_threads(self.stored()))
+
+    def test_bad_input_and_failures_are_one_line(self):
+        self.assertIn("--rounds is 2, expected at least 3", self.run_it("--rounds", 2, code=1).stderr)
+        self.assertEqual(self.calls(), [])
+        self.assertIn("exit code 1: cleave replay: no", self.run_it(code=1, stand_in_code=1).stderr.splitlines()[-1])
+        self.assertFalse((self.directory / "out" / "two_threads.csv").exists())
+
+
+class ColdStartsTest(Measurement):
+    script = "cold_starts"
+
+    def test_every_step_is_solved_cold_and_warm(self):
+        self.run_it("--seeds", "4,5")
+        calls = self.calls()
+        self.assertEqual([("--cold" in call) for call in calls if call.startswith("replay")], [True, False] * 2)
+        rows = self.rows("cold_starts.csv")
+        self.assertEqual({row["seed"] for row in rows}, {"4", "5"})
+        self.assertEqual({(row["factorizations_cold"], row["factorizations_warm"]) for row in rows}, {("9", "2")})
+        self.assertIn("the 100 recorded steps", speed.cold_starts(self.stored()))
+
+    def test_bad_input_is_one_line(self):
+        self.assertIn("--seeds has 'x'", self.run_it("--seeds", "1,x", code=1).stderr)
+
+
+class AblationTest(Measurement):
+    script = "ablation"
+
+    def test_every_scene_meets_every_choice(self):
+        result = self.run_it()
+        calls = self.calls()
+        self.assertEqual(len(calls), 4 * (1 + len(cuts.CHOICES)))
+        self.assertEqual(len(self.rows("ablation.csv")), 4 * len(cuts.CHOICES) * 15)
+        self.assertIn("| mix+fm | 40 | 50 |  |  |  |", result.stdout)
+        self.assertIn("| degree whole | `mix+none` | +25 % | +25 % | +25 % | +25 % |", cuts.ablation_facts(self.stored()))
+
+
+# Writes what Google Benchmark would, of the rows that the scripts look at.
+BENCHMARK = """#!/usr/bin/python3
+import json, os, sys
+with open(os.environ["STAND_IN_LOG"], "a") as log:
+    log.write("benchmark " + " ".join(sys.argv[1:]) + "\\n")
+path = next(word.partition("=")[2] for word in sys.argv if word.startswith("--benchmark_out="))
+piles = [word.split("/")[-2] for word in sys.argv[1:] if word.endswith(".h5")]
+rows = ["exact", "pgs:100", "pgs:300", "pgs:700", "cholmod:supernodal", "cholmod:simplicial", "factor", "assemble",
+        "schur_bodies:1", "schur_bodies:2"]
+json.dump({"benchmarks": [
+    {"name": f"{row}/{pile}/x", "run_type": "iteration", "real_time": time + (8 if row == "exact" else 0), "rows": 1000,
+     "factorizations": 5, "residual_m_per_s": 1e-12, "mflop": 6}
+    for row in rows for pile in piles for time in (2, 2, 50)]}, open(path, "w"))
+"""
+
+
+class BenchmarkCase(Measurement):
+    program_name = None
+
+    def setUp(self):
+        super().setUp()
+        beside = self.directory / "tests" / self.program_name
+        beside.parent.mkdir()
+        beside.write_text(BENCHMARK)
+        beside.chmod(0o755)
+        self.beside = beside
+
+
+class SolverBenchmarkTest(BenchmarkCase):
+    script, program_name = "benchmark_solvers", "solver_benchmark"
+
+    def test_piles_are_recorded_anew_and_ratios_are_of_medians(self):
+        for _ in range(2):
+            result = self.run_it()
+            self.assertEqual(len(self.calls()), 5 + 1)
+        self.assertIn("| 200 rocks, cfm 1e-5 | 1000 | 10.00 | 5 | 1.0e-12 | 2.9 | 5.00 (100) | 5.0 | 3.0 | 1.0 | 1.00 | 1.00 |",
+                      result.stdout)
+        self.assertEqual(self.run_it("--print-only").stdout, result.stdout)
+        self.assertEqual(self.calls(), [])
+
+    def test_a_benchmark_that_is_not_built(self):
+        self.beside.unlink()
+        self.assertIn("solver_benchmark is not built; run scripts/setup first", self.run_it(code=1).stderr)
+
+
+class PartitionBenchmarkTest(BenchmarkCase):
+    script, program_name = "benchmark_partitioners", "partition_benchmark"
+
+    def test_medians_of_the_repetitions_are_written(self):
+        self.run_it("--repetitions", 7)
+        self.assertEqual(self.calls(), ["benchmark --benchmark_repetitions=7 --benchmark_report_aggregates_only=true "
+                                        f"--benchmark_out={self.directory}/out/partition_benchmark.json "
+                                        "--benchmark_out_format=json"])
+        self.assertIn("benchmarks", json.loads((self.directory / "out" / "partition_benchmark.json").read_text()))
+
+
+if __name__ == "__main__":
+    import unittest
+    unittest.main()

@@ -1,0 +1,192 @@
+"""scripts/readme_tables: the READMEs say what the files under results/ say."""
+import pathlib
+import re
+import shutil
+import tempfile
+import unittest
+
+import stored_data
+from synthetic import ROOT, run_script
+
+from cleave_results import ResultError
+from documents import cuts, markers, paper_claims, paper_table, sets, speed, stability, text
+from documents.stored import NoResults, Stored
+from reference_stages import STAGES
+
+DOCUMENTS = ("README.md", "partition/README.md", "solver/README.md", "results/README.md", "results/table1.md")
+MEASURED = re.compile(r"\d ?(?:ms|µs|us|%|Gflop/s)\b|\d %")
+
+
+class CheckoutTest(unittest.TestCase):
+
+    def test_the_readmes_of_this_checkout_agree_with_the_files(self):
+        result = run_script("readme_tables", "--check")
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+
+    def test_every_part_stands_in_a_document_and_every_document_has_one(self):
+        found = [markers.names((ROOT / name).read_text()) for name in DOCUMENTS]
+        modules = (cuts, paper_claims, paper_table, sets, speed, stability)
+        self.assertEqual(sorted(sum(found, [])), sorted(name for module in modules for name in module.BLOCKS))
+        self.assertTrue(all(found))
+
+    def test_the_commands_told_are_those_that_remake_the_set(self):
+        commands = {"scripts/" + " ".join(stage.command).partition(" --out ")[0].replace(" {report}", "")
+                    for stage in STAGES if stage.runs or stage.files}
+        self.assertEqual(set(sets.COMMANDS.values()), commands)
+        self.assertEqual(list(sets.COMMANDS), list(sets.SETS))
+
+    def test_no_measured_number_stands_outside_of_the_generated_parts(self):
+        for name in DOCUMENTS:
+            prose = re.sub(r"```.*?```", "", markers.outside((ROOT / name).read_text()), flags=re.S)
+            self.assertEqual(MEASURED.findall(prose), [], name)
+
+
+class RewriteTest(unittest.TestCase):
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.root = pathlib.Path(scratch.name)
+        for name in DOCUMENTS:
+            (self.root / name).parent.mkdir(exist_ok=True)
+            shutil.copy(ROOT / name, self.root / name)
+        for path in (ROOT / "results").iterdir():
+            if path.suffix != ".md" and path.name != "full":
+                (self.root / "results" / path.name).symlink_to(path)
+        shutil.copytree(ROOT / "results" / "full", self.root / "results" / "full")
+
+    def run_it(self, *arguments, code=0):
+        result = run_script("readme_tables", "--root", self.root, *arguments)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return result.stdout + result.stderr
+
+    def test_a_number_changed_by_hand_is_found_and_put_right(self):
+        path = self.root / "README.md"
+        right = path.read_text()
+        path.write_text(right.replace("rows are exact: their largest", "rows are very exact: their largest"))
+        self.assertIn("README.md: differs", self.run_it("--check", code=3))
+        self.assertNotEqual(path.read_text(), right)
+        self.assertEqual(self.run_it(), "README.md: written\n")
+        self.assertEqual(path.read_text(), right)
+        self.assertEqual(self.run_it("--check"), "")
+
+    def test_a_changed_result_is_found_in_every_document_that_tells_it(self):
+        path = self.root / "results" / "full" / "rock_pile" / "steps.csv"
+        lines = path.read_text().splitlines()
+        column = lines[0].split(",").index("t_s_ms")
+        for number, line in enumerate(lines[1:], 1):
+            cells = line.split(",")
+            lines[number] = ",".join([*cells[:column], "1234.5", *cells[column + 1:]])
+        path.write_text("\n".join(lines) + "\n")
+        said = self.run_it("--check", code=3)
+        for name in ("README.md", "results/table1.md"):
+            self.assertIn(f"{name}: differs", said)
+        self.run_it()
+        self.assertIn("1234.5", (self.root / "README.md").read_text())
+
+    def test_bad_places_are_one_line(self):
+        path = self.root / "README.md"
+        right = path.read_text()
+        for spoiled, words in ((right.replace("generated: excerpt", "generated: extract"), "nothing makes 'extract'"),
+                               (right.replace("<!-- end -->", "", 1), "does not begin or does not end")):
+            path.write_text(spoiled)
+            said = self.run_it(code=1)
+            self.assertIn(words, said)
+            self.assertEqual(len(said.splitlines()), 1)
+
+
+class BlocksTest(unittest.TestCase):
+    """The parts from made-up results with known answers."""
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.root = pathlib.Path(scratch.name)
+
+    @property
+    def stored(self):
+        return Stored(self.root)
+
+    def test_what_is_not_stored_says_what_makes_it(self):
+        with self.assertRaisesRegex(NoResults, "`scripts/two_threads` makes `results/two_threads.csv`"):
+            speed.two_threads(self.stored)
+
+    def test_table1_facts_name_the_lowest_the_failed_and_the_stalls(self):
+        stored_data.full(self.root)
+        made = paper_table.table1_facts(self.stored)
+        self.assertIn("| Rock Pile | bfs+fm, 1.12 | mix+fm, 79.6 | ", made)
+        self.assertIn("All 600 rows are exact: their largest residual is 1.0e-12 m/s", made)
+        self.assertIn("50 % of the rows of Rock Pile", made)
+        self.assertIn("0 % of the rows of Chain Drop", made)
+        stored_data.full(self.root, "not_converged")
+        self.assertIn("599 of 600 rows are exact", paper_table.table1_facts(self.stored))
+        self.assertIn("1 of 10 steps failed", paper_table.table1(self.stored))
+
+    def test_speed_and_accuracy_are_those_of_the_fastest_direct_solver_and_of_finite_rows(self):
+        stored_data.solver_runs(self.root)
+        made = speed.speed_accuracy(self.stored)
+        self.assertIn("`monolithic` solves a step exactly in 4.00 ms", made)
+        self.assertIn("| 10 | 1.00 | 0.250 | 0.100 |\n| 100 | 10.0 | 2.50 | 0.0100 |", made)
+
+    def test_two_threads_are_medians_over_the_rounds(self):
+        stored_data.two_threads(self.root)
+        stored_data.write_provenance(self.root, "two_threads.csv")
+        made = speed.two_threads(self.stored)
+        self.assertIn("| `mix+fm` | 2.00 | 2.00 |", made)
+        self.assertIn("medians of 3 replays", made)
+        self.assertIn("Some CPU, 2 cores, commit 0123456789", made)
+
+    def test_cold_starts_count_large_steps_alone(self):
+        stored_data.cold_starts(self.root)
+        made = speed.cold_starts(self.stored)
+        self.assertIn("the 4 recorded steps", made)
+        self.assertIn("cold: median 9, at most 12, and at most 8 on 2; warm: median 3, at most 3, and at most 8 on 4", made)
+
+    def test_extremes_tell_failures_where_there_are_any(self):
+        stored_data.extremes(self.root)
+        made = stability.extremes(self.stored)
+        self.assertIn("| 1e6 | rock_pile | 3 | 25 / 30 | 90 / 90 |", made)
+        self.assertIn("All steps were solved; at most 30 factorisations (asked: 40) at mass ratios up to 1e3", made)
+        self.assertIn("at most 90 without any compliance", made)
+        self.assertIn("fails on none, in at most 30", stability.extremes_sentence(self.stored))
+        stored_data.extremes(self.root, "not_converged")
+        self.assertIn("1 of 6 steps were not solved", stability.extremes(self.stored))
+        self.assertIn("fails on 1,", stability.extremes_sentence(self.stored))
+
+    def test_the_ladder_counts_and_does_not_boast(self):
+        stored_data.ladder(self.root)
+        self.assertIn("| `pgs_20` | 2 of 2 | 0 of 2 |", stability.ladder(self.stored))
+        made = stability.ladder_full(self.stored)
+        self.assertIn("`exact` solves all 2 values", made)
+        self.assertIn("within 0.0060 mm of the closed form, in which the compliance lets them sag 0.12 mm", made)
+        stored_data.ladder(self.root, "not_converged")
+        self.assertIn("`exact` solves 1 of 2 values", stability.ladder_full(self.stored))
+
+    def test_the_ablation_shows_what_differs_from_the_default(self):
+        stored_data.ablation(self.root)
+        self.assertIn("| mindp+none | 100 | 150 |  |  |  |", cuts.ablation(self.stored))
+        self.assertIn("| degree whole | `mindp+none` | +50 % |", cuts.ablation_facts(self.stored))
+
+    def test_partition_speed(self):
+        stored_data.partition_benchmark(self.root)
+        self.assertIn("| 600 bodies, 1059 edges | " + "12.3 | " * 7 + "12.3 |", cuts.partition_speed(self.stored))
+
+    def test_rows_that_are_missing_are_an_error(self):
+        (self.root / "two_threads.csv").write_text("step,t_s_ms\n")
+        with self.assertRaises(ResultError):
+            speed.two_threads(self.stored)
+
+
+class TextTest(unittest.TestCase):
+
+    def test_numbers(self):
+        self.assertEqual([text.number(value) for value in (0, 0.01234, 4.5678, 789.4, 12345.6, 1.234e-13, float("nan"))],
+                         ["0", "0.0123", "4.57", "789", "12346", "1.2e-13", "-"])
+        self.assertEqual([text.percent(share) for share in (0.456, -0.001, float("nan"))], ["46 %", "0 %", "-"])
+
+    def test_lists(self):
+        self.assertEqual([text.listed(words) for words in ((), "a", "ab", "abc")], ["none", "a", "a and b", "a, b and c"])
+
+
+if __name__ == "__main__":
+    unittest.main()

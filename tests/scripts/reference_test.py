@@ -1,0 +1,150 @@
+"""scripts/reference in a small checkout whose scripts are stand-ins."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+from synthetic import ROOT, run_script
+
+from reference_stages import STAGES
+
+PROGRAM = f"""#!/usr/bin/python3
+import sys
+sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+import stand_in_key
+stand_in_key.answer()
+"""
+# Every script of a stage: notes its call, writes what the stage is to leave, ends as STAND_IN says of it.
+SCRIPT = """#!/usr/bin/python3
+import json, os, pathlib, sys
+name, arguments = os.path.basename(sys.argv[0]), sys.argv[1:]
+with open(os.environ["STAND_IN_LOG"], "a") as log:
+    log.write(" ".join([name, *arguments]) + "\\n")
+code = json.loads(os.environ.get("STAND_IN", "{}")).get(name, 0)
+out = pathlib.Path(arguments[arguments.index("--out") + 1] if "--out" in arguments else arguments[0] if arguments else ".")
+LEFT = {
+    "reproduce": [f"{scene}/{file}" for scene in ("chain_drop", "log_tower", "rock_pile", "large_rock_pile")
+                  for file in ("manifest.json", "steps.csv")],
+    "report_runs": [f"scaling/bodies_50/{file}" for file in ("manifest.json", "steps.csv")] + ["motion/x/motion.h5"],
+    "ladder": ["ladder.csv"], "extremes": ["extremes.csv"], "benchmark_solvers": ["solver_benchmark.json"],
+    "benchmark_partitioners": ["partition_benchmark.json"], "two_threads": ["two_threads.csv"],
+    "cold_starts": ["cold_starts.csv"], "ablation": ["ablation.csv"], "report": ["figures/verdicts.csv"],
+    "readme_figures": ["figure2.png"],
+}
+if code in (0, 2, 3):
+    for file in LEFT.get(name, []):
+        path = out / file
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(json.dumps({"argv": [str(path.resolve())]}) if path.suffix == ".json" else name)
+sys.exit(code)
+"""
+
+
+class ReferenceTest(unittest.TestCase):
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.directory = pathlib.Path(scratch.name).resolve()
+        self.root, self.log = self.directory / "checkout", self.directory / "log"
+        (self.root / "scripts").mkdir(parents=True)
+        for name in {stage.command[0] for stage in STAGES} | {"readme_tables"}:
+            self.executable(self.root / "scripts" / name, SCRIPT)
+        self.executable(self.directory / "cleave", PROGRAM)
+        (self.root / ".gitignore").write_text("out/\n")
+        (self.root / "results" / "old").mkdir(parents=True)
+        (self.root / "results" / "old" / "steps.csv").write_text("old")
+        (self.root / "results" / "README.md").write_text("kept")
+        self.git("init", "-q")
+        self.commit()
+
+    def executable(self, path, text):
+        path.write_text(text)
+        path.chmod(0o755)
+
+    def git(self, *arguments):
+        done = subprocess.run(["git", "-C", self.root, "-c", "user.name=x", "-c", "user.email=x@x", *arguments],
+                              capture_output=True, text=True, check=True)
+        return done.stdout.strip()
+
+    def commit(self):
+        self.git("add", "-A")
+        self.git("commit", "-q", "--allow-empty", "-m", "x")
+
+    def run_it(self, code=0, told="{}", **key):
+        """(what was called, what was said)"""
+        self.log.write_text("")
+        key = {"git_hash": self.git("rev-parse", "HEAD"), **key}
+        environment = dict(os.environ, CLEAVE_PROGRAM=str(self.directory / "cleave"), STAND_IN_LOG=str(self.log),
+                           STAND_IN=told, STAND_IN_KEY=json.dumps(key))
+        result = run_script("reference", "--root", self.root, env=environment)
+        self.assertEqual(result.returncode, code, result.stdout + result.stderr)
+        return self.log.read_text().splitlines(), result.stderr
+
+    def results(self):
+        folder = self.root / "results"
+        return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+    def test_all_is_made_in_order_and_replaces_what_was_there(self):
+        calls, said = self.run_it()
+        self.assertEqual([call.split()[0] for call in calls], [stage.command[0] for stage in STAGES] + ["readme_tables"])
+        self.assertIn("[1/13] matrix, about 35 min: scripts/reproduce --measure-every 10 --out out/reference/report", said)
+        self.assertEqual(self.results(), {
+            "README.md", "provenance.json", "extremes.csv", "solver_benchmark.json", "partition_benchmark.json",
+            "two_threads.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
+            "report/verdicts.csv", "report/scaling/bodies_50/manifest.json", "report/scaling/bodies_50/steps.csv",
+            "figures/figure2.png", *(f"full/{scene}/{file}" for scene in
+                                     ("chain_drop", "log_tower", "rock_pile", "large_rock_pile")
+                                     for file in ("manifest.json", "steps.csv"))})
+
+    def test_paths_in_manifests_are_relative_and_files_without_one_have_provenance(self):
+        self.run_it()
+        manifest = json.loads((self.root / "results/full/rock_pile/manifest.json").read_text())
+        self.assertEqual(manifest["argv"], ["out/reference/report/rock_pile/manifest.json"])
+        notes = json.loads((self.root / "results/provenance.json").read_text())["files"]
+        self.assertEqual(set(notes) - {"figures"}, {name for name in self.results() if not name.endswith(
+            ("README.md", "manifest.json", "steps.csv", "provenance.json"))})
+        note = notes["extremes.csv"]
+        self.assertEqual(note["command"], "scripts/extremes --seeds 1,2 --out out/reference/extremes")
+        self.assertEqual(note["build"], {"git_hash": self.git("rev-parse", "HEAD"), "git_dirty": "false"})
+        self.assertEqual(note["machine"], {"cpu_model": "Some CPU", "cores": 2})
+
+    def test_what_is_done_is_kept_on_the_same_commit_and_machine_alone(self):
+        calls, _ = self.run_it(code=130, told='{"extremes": 130}')
+        self.assertEqual(calls[-1].split()[0], "extremes")
+        self.assertIn("old/steps.csv", self.results())
+        self.assertEqual(self.run_it()[0][0].split()[0], "extremes")
+        self.git("checkout", "-q", "--", ".")
+        self.git("clean", "-qfd")
+        self.assertEqual([call.split()[0] for call in self.run_it()[0]], ["readme_tables"])
+        self.commit()
+        self.assertEqual(len(self.run_it()[0]), len(STAGES) + 1)
+        self.commit()
+        self.run_it()
+        self.git("checkout", "-q", "--", ".")
+        self.git("clean", "-qfd")
+        self.assertEqual(len(self.run_it(cpu_model="Other CPU")[0]), len(STAGES) + 1)
+
+    def test_local_changes_and_other_builds_are_refused(self):
+        for key, words in (({"git_hash": "f" * 40}, "is a build of commit ffffffffff"),
+                           ({"git_dirty": "true"}, "local changes: true")):
+            calls, said = self.run_it(code=1, **key)
+            self.assertEqual(calls, [])
+            self.assertIn(words, said)
+        (self.root / "new").touch()
+        calls, said = self.run_it(code=1)
+        self.assertEqual((calls, len(said.splitlines())), ([], 1))
+        self.assertIn("local changes", said)
+
+    def test_a_stage_that_fails_stops_all_and_a_failed_check_is_told_at_the_end(self):
+        calls, said = self.run_it(code=1, told='{"two_threads": 1}')
+        self.assertEqual(calls[-1].split()[0], "two_threads")
+        self.assertIn("two_threads --out out/reference/two_threads stopped with exit code 1", said)
+        _, said = self.run_it(code=3, told='{"two_threads": 3}')
+        self.assertIn("two_threads: a check failed", said)
+
+
+if __name__ == "__main__":
+    unittest.main()

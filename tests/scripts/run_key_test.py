@@ -1,0 +1,89 @@
+"""What decides that results are there already: scripts/run_key.py, seen through scripts/reproduce."""
+import json
+import os
+import unittest
+import unittest.mock
+
+from reproduce_test import STAND_IN
+from stand_in import StandInCase
+from synthetic import ROOT, run_script
+
+import run_key
+from cleave_results import ResultError
+
+KEY = {"run_id": "1", "threads": 2, "git_hash": "a" * 40, "git_dirty": "false", "cpu_model": "C", "cores": 2}
+
+
+class DifferenceTest(unittest.TestCase):
+
+    def test_equal_keys_are_kept_and_every_part_of_the_key_counts(self):
+        self.assertIsNone(run_key.difference(KEY, KEY))
+        for name, value, words in (("run_id", "2", "another experiment: run_id 1, wanted 2"),
+                                   ("threads", 1, "threads 2, wanted 1"), ("git_hash", "b" * 40, "commit aaaaaaaaaa"),
+                                   ("cpu_model", "D", "another machine: cpu_model C, here D"),
+                                   ("cores", 4, "another machine: cores 2, here 4")):
+            self.assertIn(words, run_key.difference(KEY, KEY | {name: value}), name)
+
+    def test_results_of_a_dirty_or_unknown_build_equal_nothing(self):
+        for state in ("true", "unknown"):
+            dirty = KEY | {"git_dirty": state}
+            self.assertIn("never kept", run_key.difference(dirty, dirty))
+            self.assertIn("local changes", run_key.difference(dirty, KEY))
+
+    def test_a_manifest_without_a_key_is_no_match(self):
+        self.assertIsNotNone(run_key.difference(run_key.manifest_key({}), KEY))
+
+    def test_a_program_that_gives_no_key(self):
+        with self.assertRaisesRegex(ResultError, "exit code 1"):
+            run_key.program_key("/bin/false", ("run",))
+
+
+class KeepTest(StandInCase):
+    script, stand_in = "reproduce", STAND_IN
+
+    def reproduce(self, **changes):
+        """How often the program ran, and what was said."""
+        with unittest.mock.patch.dict(os.environ, STAND_IN_KEY=json.dumps(changes)):
+            said = self.run_it("--scene", "rock_pile", "--steps", 20).stderr
+        return len(self.calls()), said
+
+    def test_another_build_machine_or_set_of_names_runs_anew_and_says_why(self):
+        self.assertEqual(self.reproduce()[0], 1)
+        self.assertEqual(self.reproduce()[0], 0)
+        for change, words in (({"git_hash": "f" * 40}, "made by commit 0123456789, this is ffffffffff"),
+                              ({"cpu_model": "Other CPU"}, "another machine: cpu_model Some CPU, here Other CPU"),
+                              ({"cores": 8}, "another machine: cores 2, here 8"),
+                              ({"names": "mindp mix karger"}, "another experiment: run_id")):
+            with self.subTest(change):
+                runs, said = self.reproduce(**change)
+                self.assertEqual(runs, 1)
+                self.assertIn(words, said)
+                self.reproduce()
+
+    def test_results_of_a_dirty_build_are_never_kept(self):
+        for _ in range(2):
+            self.assertEqual(self.reproduce(git_dirty="true")[0], 1)
+        runs, said = self.reproduce()
+        self.assertEqual(runs, 1)
+        self.assertIn("local changes", said)
+
+    def test_motion_that_is_asked_for_has_to_be_there(self):
+        self.reproduce()
+        done = run_script("is_complete", self.program, self.directory / "out" / "rock_pile", "run", "--record-motion")
+        self.assertEqual(done.returncode, 1, done.stdout)
+
+
+class VersionTest(unittest.TestCase):
+
+    def test_the_sources_have_one_version(self):
+        version = f"VERSION {citation_version()}"
+        self.assertIn(version, (ROOT / "CMakeLists.txt").read_text())
+
+
+def citation_version():
+    lines = (ROOT / "CITATION.cff").read_text().splitlines()
+    return next(line.split()[1] for line in lines if line.startswith("version: "))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,91 @@
+"""Small made-up results as scripts/reference stores them, for the generated parts of the READMEs."""
+import csv
+import json
+
+from synthetic import COMBINATIONS, matrix, write_steps
+
+from cleave_results import SCENES
+
+BUILD = {"git_hash": "0123456789abcdef", "git_dirty": "false"}
+MACHINE = {"cpu_model": "Some CPU", "cores": 2}
+
+
+def write_csv(path, rows):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def write_provenance(root, *names):
+    entry = {"command": "scripts/x", "seconds": 90, "build": BUILD, "machine": MACHINE}
+    (root / "provenance.json").write_text(json.dumps({"files": {name: entry for name in names}}))
+
+
+def two_threads(root):
+    rows = [{"step": step, "partitioner": "mix", "refiner": "fm", "threads": threads, "round": number,
+             "t_s_ms": 10 * step / threads + (1000 if number == 3 else 0)}
+            for step in (100, 200) for threads in (1, 2) for number in (1, 2, 3)]
+    write_csv(root / "two_threads.csv", rows)
+
+
+def cold_starts(root):
+    rows = [{"seed": 1, "step": step, "rows": 500 + 500 * step, "factorizations_cold": 4 + 2 * step,
+             "factorizations_warm": 3} for step in range(5)]
+    write_csv(root / "cold_starts.csv", rows)
+
+
+def extremes(root, spoiled=None):
+    rows = [{"mass_ratio": ratio, "scene": "rock_pile", "cfm": cfm, "seed": 1, "status": "ok", "factorizations": count}
+            for ratio in ("1", "1e6") for cfm, count in (("1e-4", 20), ("1e-4", 30), ("0", 90))]
+    if spoiled:
+        rows[0]["status"] = spoiled
+    write_csv(root / "extremes.csv", rows)
+
+
+def ladder(root, heavy_status="ok"):
+    rows = [{"rung": "heavy_top", "value": value, "solver": solver, "steps": 600, "height_error_m": 6e-6,
+             "sag_m": 1.2e-4, "status": heavy_status if value == "1e6" else "ok",
+             "physics": "height" if solver == "pgs_20" else "ok"}
+            for value in ("1", "1e6") for solver in ("exact", "pgs_20")]
+    write_csv(root / "ladder" / "ladder.csv", rows)
+    write_csv(root / "ladder" / "ladder_full_exact.csv", [row for row in rows if row["solver"] == "exact"])
+
+
+def ablation(root):
+    rows = [{"scene": "rock_pile", "bodies": 200, "partitioner": partitioner, "refiner": refiner, "choice": choice,
+             "steps": 8, "interface_rows": 100 if choice != "degree whole" else 150}
+            for partitioner, refiner in COMBINATIONS
+            for choice in ("default", "degree whole", "degree constraints", "as printed", "tau_mr 10.5")]
+    write_csv(root / "ablation.csv", rows)
+
+
+def partition_benchmark(root):
+    names = [f"{partitioner}+{refiner}" for partitioner, refiner in COMBINATIONS] + ["metis_recursive", "metis_kway"]
+    entries = [{"name": f"{graph}/{name}_median", "aggregate_name": "median", "cpu_time": 12.345, "interface_rows": 480}
+               for graph in ("pile_200", "pile_600") for name in names]
+    (root / "partition_benchmark.json").write_text(json.dumps({"benchmarks": entries}))
+
+
+def full(root, spoiled=None):
+    """bfs+fm is made the fastest of every scene; every other step of rock_pile falls back."""
+    for scene in SCENES:
+        rows = [row | {"fallbacks": int(scene == "rock_pile" and row["step"] % 100 == 0)} for row in matrix(scene)]
+        for row in rows:
+            if (row["partitioner"], row["refiner"]) == ("bfs", "fm"):
+                row["t_s_ms"] = 1
+        if spoiled and scene == "rock_pile":
+            rows[0]["status"] = spoiled
+        write_steps(root / "full" / scene, rows)
+
+
+def solver_runs(root):
+    """A direct solver of 4 ms, another of 5 ms, and sweeps that take a tenth of a millisecond each."""
+    folder, row = root / "report" / "solvers" / "rocks_200", matrix("rock_pile")[0]
+    write_steps(folder / "direct", [row | {"solver": solver, "t_s_ms": time}
+                                    for solver, time in (("schur", 5), ("monolithic", 4))])
+    for sweeps in (10, 100):
+        rows = [row | {"solver": "pgs", "status": "not_converged", "t_s_ms": sweeps / 10, "residual_m_per_s": 1 / sweeps},
+                row | {"solver": "pgs", "status": "diverged", "t_s_ms": "nan", "residual_m_per_s": "nan"}]
+        write_steps(folder / f"pgs_{sweeps}", rows)
