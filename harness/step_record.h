@@ -161,7 +161,7 @@ void visit_fields(Record& r, Visitor&& visit) {
   visit("t_s_other_ms", r.t_s_other_ms, "t_s_ms less its named stages");
   for (std::size_t i = 0; i < kModelWorkers.size(); ++i)
     visit("t_s_model_p" + std::to_string(kModelWorkers[i]) + "_ms", r.t_s_model_ms[i],
-          "modelled solve on so many workers; meaningful in one-thread runs");
+          "solve modelled on so many workers from the task times of one-thread runs");
   visit("iterations", r.iterations, "iterations of the strategy");
   visit("factorizations", r.factorizations, "numeric factorisations");
   visit("fallbacks", r.fallbacks, "hand-overs from one strategy to the next");

@@ -63,6 +63,7 @@ class DirectSolver : public StepSolver {
         kernel_name_(kernel),
         splits_(splits),
         options_(options),
+        clock_(options.threads),
         kernel_(std::move(made)),
         state_(options, clock_) {}
 

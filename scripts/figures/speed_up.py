@@ -18,9 +18,9 @@ def draw(data):
     if not groups:
         raise NoData("no one-thread run with columns t_s_model_p<N>_ms")
     figure, axes = style.panels(len(groups), 2, 2.6, sharey=True)
-    measured, faults = False, []
+    measured = False
     for ax, (name, base, others) in zip(axes, groups):
-        faults.append(_model(ax, base.ok))
+        _model(ax, base.ok)
         measured |= _measured(ax, base, others)
         ax.set_title(name)
     # The ideal line goes out of the picture; the curves decide how high it is.
@@ -35,13 +35,11 @@ def draw(data):
     said = ("Marks with a black edge: measured, t_s with one thread over t_s with that many on the same "
             "steps, spread sideways." if measured else
             "No data: no run with more threads of the same setup, so nothing measured stands beside.")
-    worst = max((fault for fault in faults if fault is not None), default=None)
-    check = "" if worst is None else f" The model's single worker is within {worst:.1%} of the measured t_s."
     parts = [part for _, base, others in groups for part in [base, *others]]
     return figure, (
         "Speed-up of the solve against the number of workers, as ratio of mean t_s. Curves: modelled from "
         "the task times of one-thread runs (every parallel stage takes the makespan of its tasks, longest "
-        f"first). Grey: ideal. {said}{check} {machines(parts)}")
+        f"first). Grey: ideal. {said} {machines(parts)}")
 
 
 def _groups(data):
@@ -68,7 +66,6 @@ def model_columns(rows):
 
 
 def _model(ax, rows):
-    """Draws the curves; returns the largest relative difference between the single worker and t_s."""
     columns = model_columns(rows)
     ideal = numpy.geomspace(1, max(columns), 50)
     ax.plot(ideal, ideal, color=style.GRID, linewidth=3, zorder=1)
@@ -79,9 +76,6 @@ def _model(ax, rows):
     ax.set(xscale="log", xlabel="workers", ylabel="speed-up of $t_s$")
     ax.set_xticks(list(columns), list(map(str, columns)))
     ax.xaxis.set_minor_locator(style.matplotlib.ticker.NullLocator())
-    if "t_s_ms" not in rows:
-        return None
-    return (rows[columns[1]] / rows["t_s_ms"] - 1).abs().max()
 
 
 def _measured(ax, base, others):

@@ -9,7 +9,7 @@ namespace {
 
 class Pgs : public StepSolver {
  public:
-  explicit Pgs(const SolveOptions& options) : options_(options) {}
+  explicit Pgs(const SolveOptions& options) : options_(options), clock_(options.threads) {}
   bool uses_partition() const override { return false; }
 
  private:
