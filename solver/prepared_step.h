@@ -31,6 +31,7 @@ class PreparedStep {
   std::span<const double> mass_jacobian() const { return mass_jacobian_; }
   std::span<const double> diagonal() const { return diagonal_; }  // (m) d_r = (J M^-1 J^T + C)_rr
   double velocity_scale() const { return velocity_scale_; }       // max(1, largest |v0|), m/s
+  double exact_limit_m_per_s() const { return kExactLimit * velocity_scale_; }
 
   // v (n, 6) = v0 + M^-1 J^T lambda
   void velocity(std::span<const double> impulse, std::span<double> v) const;

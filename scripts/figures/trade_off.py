@@ -1,12 +1,12 @@
 """Time against error for every solver in the data, one panel a setup that was solved by several of them."""
 import pandas
 
+from cleave_results import EXACT_LIMIT
 from figures import style
 from figures.choose import provenance
 from figures.solver_groups import MOST_PANELS, groups, of_many_solvers, shared_rows
 from figures.tree import NoData
 
-RESIDUAL_LIMIT = 1e-9  # m/s; the judge accepts up to this, times the largest free velocity above 1 m/s
 FLOOR = 1e-17  # where a residual of exactly 0 is drawn
 
 
@@ -53,7 +53,7 @@ def draw(data):
         "Time against error, and the same times solver by solver. Time is t_s + t_pr, error the judge's "
         "residual; points are medians over the steps that all solvers of a panel have in common, one a "
         "solver and combination, lines quartiles; the grey staircase joins what nothing beats in both. "
-        f"Dashed: {_power(RESIDUAL_LIMIT)} m/s, what exact means. Hollow: not accepted by the judge in "
+        f"Dashed: {_power(EXACT_LIMIT)} m/s, what exact means. Hollow: not accepted by the judge in "
         f"every step. A residual of 0 is drawn at {_power(FLOOR)}. {_left_out(found)}" +
         provenance({name: parts for name, parts, _ in shown}))
 
@@ -105,7 +105,7 @@ def _scatter(ax, table, markers):
     front = table.sort_values(["time_0.5", "residual_0.5"])
     front = front[front["residual_0.5"] < front["residual_0.5"].cummin().shift(fill_value=float("inf"))]
     ax.step(front["time_0.5"], front["residual_0.5"], where="post", color=style.MUTED, linewidth=1, zorder=1)
-    ax.axhline(RESIDUAL_LIMIT, color=style.INK, linewidth=0.8, linestyle="--", zorder=1)
+    ax.axhline(EXACT_LIMIT, color=style.INK, linewidth=0.8, linestyle="--", zorder=1)
     ax.set(xscale="log", yscale="log", xlabel="$t_s + t_{pr}$ per step, ms", ylabel="residual, m/s")
     _name_inexact(ax, table)
 
@@ -115,7 +115,7 @@ def _name_inexact(ax, table):
 
     Downwards at the one that has most points there, which are above no other; upwards at the others.
     """
-    inexact = table[table["residual_0.5"] > RESIDUAL_LIMIT]
+    inexact = table[table["residual_0.5"] > EXACT_LIMIT]
     if inexact.empty:
         return
     inexact = inexact.sort_values("time_0.5")

@@ -273,6 +273,25 @@ TEST_P(SolverContractTest, StageTimesAddUp) {
   }
 }
 
+// Of every strategy that runs; a solver without one takes as many sweeps as it is told.
+TEST_P(SolverContractTest, MaxIterationsIsAnEnd) {
+  const StepProblem problem = make_pile(13, {.columns = 3, .rows = 2, .layers = 3, .cfm = 1e-8});
+  const std::vector<int> parts = sliced_parts(problem.body_count(), 4);
+  SolveOptions options;
+  options.max_iterations = 1;
+  Solution solution = cold_start(problem);
+  const SolveSummary summary = solve(problem, parts, solution, options);
+  if (std::string_view(GetParam()) == "pgs") {
+    EXPECT_EQ(summary.iterations, options.sweeps);
+    return;
+  }
+  constexpr int kMostStrategies = 3, kMostAttempts = 3;
+  EXPECT_GE(summary.iterations, 1);
+  EXPECT_LE(summary.iterations, kMostStrategies * kMostAttempts);
+  Solution patient = cold_start(problem);
+  EXPECT_GT(solve(problem, parts, patient).iterations, summary.iterations);
+}
+
 TEST_P(SolverContractTest, OnlyOneThreadIsModelled) {
   const StepProblem problem = make_pile(13, {.columns = 3, .rows = 2, .layers = 3, .mu = 0});
   SolveOptions options;
@@ -296,6 +315,21 @@ TEST_P(SolverContractTest, SaysWhatRan) {
   if (!may_miss(GetParam())) {
     EXPECT_GE(summary.factorizations, 1);
   }
+}
+
+TEST(PivotTest, StartsFromAsManySweepsAsAskedFor) {
+  const StepProblem problem = make_pile(13, {.columns = 3, .rows = 2, .layers = 3, .cfm = 1e-5});
+  const auto iterations = [&](int predictor_sweeps, int sweeps) {
+    SolveOptions options;
+    options.predictor_sweeps = predictor_sweeps;
+    options.sweeps = sweeps;
+    Solution solution = cold_start(problem);
+    return make_step_solver("pivot:monolithic", options)
+        ->solve(problem, own_parts(problem.body_count()), solution)
+        .iterations;
+  };
+  EXPECT_LT(iterations(200, 5), iterations(0, 5));
+  EXPECT_EQ(iterations(40, 500), iterations(40, 5));  // those are of pgs
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, SolverContractTest, testing::ValuesIn(all_solver_names()),
