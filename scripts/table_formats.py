@@ -67,7 +67,8 @@ def scene_notes(tables):
 def _text_row(cell):
     ratios = "".join(f"{format_ratio(ratio):>8}" for ratio in cell.ours / cell.paper)
     return (f"{cell.partitioner:<7}{cell.refiner:<7}|" + _text_times(cell.ours, cell.ours_lowest, 3) +
-            _text_times(cell.paper, cell.paper_lowest, 1) + f"{ratios}  |{'!' if cell.remark else ''}{_waited(cell)}")
+            _text_times(cell.paper, cell.paper_lowest, 1) + f"{ratios}  |" + ("!" if cell.remark else "") +
+            _waited(cell))
 
 
 def _waited(cell):
@@ -119,7 +120,8 @@ def format_markdown(tables, header):
             entries.append(f"{_bold(ours, cell.ours_lowest)} (paper {_bold(paper, cell.paper_lowest)}), "
                            f"×{format_ratio((cell.ours / cell.paper)[2])}")
         lines.append(f"| {cells[0].partitioner} {cells[0].refiner} | " + " | ".join(entries) + " |")
-    return "\n".join([*lines, "", CELL_HELP + " Bold: lowest total of the scene.", *header, *scene_notes(tables)]) + "\n"
+    help_line = CELL_HELP + " Bold: lowest total of the scene."
+    return "\n".join([*lines, "", help_line, *header, *scene_notes(tables)]) + "\n"
 
 
 def _bold(text, bold):
@@ -155,8 +157,8 @@ def format_latex(tables, header):
         lines.append(" & ".join(entries) + " \\\\")
     remarks = ["$^\\dagger$ steps failed or missing, not in the mean."] if any(
         cell.remark for table in tables for cell in table.cells) else []
-    caption = " ".join(
-        [CELL_HELP.replace("t_s", "$t_s$").replace("t_pr", "$t_{pr}$"), *map(_latex, [*header, *scene_notes(tables)]), *remarks])
+    cell_help = CELL_HELP.replace("t_s", "$t_s$").replace("t_pr", "$t_{pr}$")
+    caption = " ".join([cell_help, *map(_latex, [*header, *scene_notes(tables)]), *remarks])
     lines += ["\\bottomrule", "\\end{tabular}", "\\caption{" + caption + "}", "\\end{table*}"]
     return "\n".join(lines) + "\n"
 

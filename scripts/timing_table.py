@@ -126,7 +126,8 @@ def _scene_table(scene, rows, paper):
     cells = [_cell(scene, names, groups[names], len(steps), paper) for names in groups]
     _mark_lowest([cell for cell in cells if cell.complete], "ours")
     _mark_lowest(cells, "paper")
-    return SceneTable(scene, len(steps), rows[0]["threads"], rows[0]["solver"], cells, _differences(scene, rows))
+    return SceneTable(scene, len(steps), rows[0]["threads"], rows[0]["solver"], cells,
+                      _differences(scene, rows))
 
 
 def _differences(scene, rows):
