@@ -9,9 +9,12 @@
 #include <CLI/Version.hpp>
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <ctime>
 #include <fstream>
 #include <limits>
+
+#include "harness/dense_speed.h"
 
 // Written by build_info.cmake; a build without it says "unknown".
 #if __has_include("cleave_build_info.h")
@@ -40,6 +43,24 @@ std::string cpu_model() {
     if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
   }
   return "unknown";
+}
+
+std::string governor() {
+  std::ifstream file("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  std::string name;
+  return file >> name ? name : "unknown";
+}
+
+std::vector<std::pair<std::string, std::string>> omp_environment() {
+  std::vector<std::pair<std::string, std::string>> variables;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string text = *entry;
+    const std::size_t equals = text.find('=');
+    if (text.starts_with("OMP_") && equals != std::string::npos)
+      variables.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  std::ranges::sort(variables);
+  return variables;
 }
 
 std::string dotted(int major, int minor, int patch) {
@@ -72,15 +93,24 @@ std::vector<std::pair<std::string, std::string>> library_versions() {
       {"cli11", CLI11_VERSION}};
 }
 
+std::array<double, 3> load_average() {
+  std::array<double, 3> load{};
+  if (::getloadavg(load.data(), 3) != 3) load.fill(std::numeric_limits<double>::quiet_NaN());
+  return load;
+}
+
 MachineInfo machine_info() {
   MachineInfo info;
   char host[256] = "";
   info.host = ::gethostname(host, sizeof host - 1) == 0 ? host : "unknown";
   info.cpu_model = cpu_model();
   info.cores = omp_get_num_procs();
-  if (::getloadavg(info.load_average.data(), 3) != 3)
-    info.load_average.fill(std::numeric_limits<double>::quiet_NaN());
+  info.governor = governor();
+  info.load_average = load_average();
   info.omp_threads = omp_get_max_threads();
+  info.omp_environment = omp_environment();
+  info.dense_kernel = dense_kernel();
+  info.dense_gflop_per_s = dense_gflop_per_s();
   return info;
 }
 

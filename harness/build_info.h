@@ -25,14 +25,21 @@ std::string version_text(const BuildInfo& build);
 // Name and version as the library reports it at run time where it can, else as its headers do.
 std::vector<std::pair<std::string, std::string>> library_versions();
 
+// Over 1, 5 and 15 minutes; NaN where the system does not say.
+std::array<double, 3> load_average();
+
 struct MachineInfo {
   std::string host;
   std::string cpu_model;
-  int cores = 0;                         // logical ones that this process may use
-  std::array<double, 3> load_average{};  // over 1, 5 and 15 minutes; NaN where the system does not say
+  int cores = 0;         // logical ones that this process may use
+  std::string governor;  // of the first core's frequency; "unknown" where the system does not say
+  std::array<double, 3> load_average{};
   int omp_threads = 0;
+  std::vector<std::pair<std::string, std::string>> omp_environment;  // OMP_* as set, by name
+  std::string dense_kernel;
+  double dense_gflop_per_s = 0;
 };
-MachineInfo machine_info();
+MachineInfo machine_info();  // measures the dense kernel, about 10 ms
 
 // Now, as 2024-01-31T12:00:00Z.
 std::string utc_now();

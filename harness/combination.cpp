@@ -100,15 +100,19 @@ std::optional<Split> Combination::split(const StepProblem& problem) const {
 
 Combination::Repeat Combination::repeat(const StepProblem& problem) {
   Repeat repeat{split(problem), {}};
+  const std::vector<int> parts = solver_parts(repeat.split, problem);
   Outcome& outcome = repeat.outcome;
   outcome.solution.impulse = problem.warm_impulse;
   outcome.solution.velocity.assign(problem.free_velocity.size(), 0.0);
   try {
-    outcome.summary = solver_->solve(problem, solver_parts(repeat.split, problem), outcome.solution);
+    const CoreMeter meter;
+    outcome.summary = solver_->solve(problem, parts, outcome.solution);
+    outcome.cores = meter.stop();
     outcome.status = outcome.summary.status;
     if (baseline_ != nullptr) outcome.ode_messages = baseline_->messages();
   } catch (const std::bad_alloc&) {
-    outcome.status = SolveStatus::out_of_memory;
+    outcome.status = outcome.summary.status = SolveStatus::out_of_memory;
+    outcome.summary.message = "no memory for the solve";
     outcome.solution = {problem.warm_impulse, problem.free_velocity};
   }
   return repeat;
@@ -134,12 +138,14 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   std::vector<Repeat> repeats;
   for (int i = 0; i < repeats_; ++i) {
     repeats.push_back(repeat(problem));
+    if (!repeats.back().outcome.solved()) break;  // a failure has no time to take the median of
     // What one solve leaves in the solver's scratch must not reach the next, or repeats would time another
     // problem.
     assert(same_bytes(repeats.back().outcome.solution.impulse, repeats.front().outcome.solution.impulse));
   }
   const auto total_ms = [](const Repeat& repeat) { return repeat.outcome.summary.times.total_ms; };
-  Repeat& chosen = repeats[median_index(repeats, total_ms)];
+  const bool failed = !repeats.back().outcome.solved();
+  Repeat& chosen = failed ? repeats.back() : repeats[median_index(repeats, total_ms)];
   judge_outcome(problem, chosen.outcome);
 
   set_names(row);
@@ -148,10 +154,17 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   row.ode_messages += chosen.outcome.ode_messages;
   if (splitter_) set_split(problem, repeats, row);
   row.set_summary(chosen.outcome.summary);
-  row.t_s_min_ms = std::ranges::min(repeats, {}, total_ms).outcome.summary.times.total_ms;
+  row.peak_memory_mb = peak_memory_mb();
   set_verdict(problem, chosen.outcome, row);
   if (splitter_) chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
-  row.solution_hash = hex(solution_hash(chosen.outcome.solution.impulse, chosen.outcome.part_of_body));
+  if (!failed) {
+    const auto [least, most] = std::ranges::minmax_element(repeats, {}, total_ms);
+    row.t_s_min_ms = total_ms(*least);
+    row.t_s_max_ms = total_ms(*most);
+    row.t_s_cpu_ms = chosen.outcome.cores.cpu_ms;
+    row.t_s_waiting_ms = chosen.outcome.cores.waiting_ms;
+    row.solution_hash = hex(solution_hash(chosen.outcome.solution.impulse, chosen.outcome.part_of_body));
+  }
   return std::move(chosen.outcome);
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/core_meter.h"
 #include "harness/friction.h"
 #include "harness/ode_baselines.h"
 #include "harness/options.h"
@@ -32,6 +33,7 @@ struct Outcome {
   SolveStatus status =
       SolveStatus::ok;  // the solver's, but not_converged or diverged where the judge disagrees
   SolveSummary summary;
+  CoreTimes cores{};  // of the solve
   Solution solution;
   int ode_messages = 0;           // of ODE's own solvers: messages ODE gave while it solved
   std::vector<int> part_of_body;  // (n) what `measure` split the bodies into; empty where parts are ignored
@@ -39,7 +41,7 @@ struct Outcome {
   bool finite = false;  // impulses and velocities are numbers
 
   // There is a result to judge at all.
-  bool solved() const { return status != SolveStatus::refused && status != SolveStatus::crashed; }
+  bool solved() const { return has_result(status); }
   bool can_advance() const { return solved() && finite; }
 };
 

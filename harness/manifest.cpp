@@ -43,15 +43,26 @@ void add_build(JsonWriter& json) {
   json.end_object();
 }
 
-void add_machine(JsonWriter& json, const MachineInfo& machine) {
+void add_load(JsonWriter& json, const char* name, const std::array<double, 3>& load_average) {
+  json.begin_array(name);
+  for (const double load : load_average) json.value(load);
+  json.end_array();
+}
+
+void add_machine(JsonWriter& json, const MachineInfo& machine, const std::array<double, 3>* load_at_end) {
   json.begin_object("machine");
   json.field("host", machine.host);
   json.field("cpu_model", machine.cpu_model);
   json.field("cores", machine.cores);
-  json.begin_array("load_average");
-  for (const double load : machine.load_average) json.value(load);
-  json.end_array();
+  json.field("governor", machine.governor);
+  add_load(json, "load_average", machine.load_average);
+  if (load_at_end != nullptr) add_load(json, "load_average_end", *load_at_end);
   json.field("omp_threads", machine.omp_threads);
+  json.begin_object("omp_environment");
+  for (const auto& [name, value] : machine.omp_environment) json.field(name, value);
+  json.end_object();
+  json.field("dense_kernel", machine.dense_kernel);
+  json.field("dense_gflop_per_s", machine.dense_gflop_per_s);
   json.end_object();
 }
 
@@ -67,6 +78,8 @@ void add_result(JsonWriter& json, const RunSummary& summary) {
   json.field("unconverged_bounds", summary.unconverged_bounds);
   json.field("worst_residual_m_per_s", summary.worst_residual_m_per_s);
   json.field("worst_velocity_spread_m_per_s", summary.worst_velocity_spread_m_per_s);
+  json.field("t_s_total_ms", summary.t_s_total_ms);
+  json.field("t_s_waiting_total_ms", summary.t_s_waiting_total_ms);
   json.field("wall_s", summary.wall_s);
   json.end_object();
 }
@@ -77,6 +90,7 @@ void add_columns(JsonWriter& json) {
     json.begin_object();
     json.field("name", column.name);
     json.field("help", column.help);
+    json.field("machine", JsonLiteral{column.machine ? "true" : "false"});
     json.end_object();
   }
   json.end_array();
@@ -122,6 +136,7 @@ void Manifest::write_start() {
 
 void Manifest::write_end(const std::string& state, const RunSummary& summary, const std::string& message) {
   utc_end_ = utc_now();
+  load_average_end_ = load_average();
   write(state, &summary, message);
 }
 
@@ -143,7 +158,7 @@ void Manifest::write(const std::string& state, const RunSummary* summary, const 
   add_options(json, options_);
   if (summary != nullptr) add_result(json, *summary);
   add_build(json);
-  add_machine(json, machine_);
+  add_machine(json, machine_, summary != nullptr ? &load_average_end_ : nullptr);
   add_columns(json);
   json.end_object();
   write_atomically(path_, json.text());

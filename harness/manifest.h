@@ -4,6 +4,7 @@
 // process is that of a killed run.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -36,7 +37,8 @@ class Manifest {
   std::string command_;
   std::vector<std::string> argv_;
   std::vector<OptionValue> options_;
-  MachineInfo machine_;  // at the start: later the load is mostly the run's own
+  MachineInfo machine_;                     // at the start
+  std::array<double, 3> load_average_end_;  // by then mostly the run's own
   std::string utc_start_;
   std::string utc_end_;
 };

@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -133,6 +134,8 @@ class OdeSolver : public OdeBaseline {
     SolveSummary summary;
     summary.strategy = quick_ ? "ode-quickstep" : "ode-step";
     summary.kernel = "-";
+    summary.iterations = summary.factorizations = -1;  // ODE does not say
+    summary.factor_mflop_local = summary.factor_mflop_interface = std::numeric_limits<double>::quiet_NaN();
     messages_ = 0;
     if (world_ == nullptr) {
       summary.status = SolveStatus::refused;

@@ -121,6 +121,10 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given) {
             "has a meaning only in lockstep: in --mode separate every combination advances its world");
     exclude(given, "record-motion", "records one world; --mode separate has one per combination");
   }
+  if (options.steps > 0 && options.measure_every > options.steps)
+    reject("measure-every", std::to_string(options.measure_every) + " measures none of --steps " +
+                                std::to_string(options.steps) + ", allowed: 1 to " +
+                                std::to_string(options.steps));
   return options;
 }
 

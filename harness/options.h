@@ -41,6 +41,8 @@ struct RunOptions {
   bool record_motion = false;
   bool reuse_analysis = false;
   int sweeps = 5;
+  int predictor_sweeps = 40;
+  int max_iterations = 100;
   OdeBaselineOptions ode_baseline;
 
   ExtractOptions extract;

@@ -19,7 +19,8 @@ void take_worse(double& worst, double value) {
 
 // Rows without a judge's number say nothing of residuals.
 bool judged(const StepRecord& row) {
-  return row.status != "skipped" && row.status != "refused" && row.status != "crashed";
+  return row.status != "skipped" && row.status != "refused" && row.status != "crashed" &&
+         row.status != "out_of_memory";
 }
 
 // Why the row is not ok.
@@ -35,6 +36,10 @@ void RunSummary::add(const StepRecord& row) {
   if (judged(row)) {
     take_worse(worst_residual_m_per_s, row.residual_m_per_s);
     take_worse(worst_velocity_spread_m_per_s, row.velocity_spread_m_per_s);
+  }
+  if (!std::isnan(row.t_s_waiting_ms)) {
+    t_s_total_ms += row.t_s_ms;
+    t_s_waiting_total_ms += row.t_s_waiting_ms;
   }
   if (row.status == "ok") {
     ++rows_ok;
@@ -62,6 +67,10 @@ std::string RunSummary::text() const {
   if (measured_steps > 0 && 5 * measured_with_contacts < measured_steps)
     lines += format("only %d of %d measured steps have contacts (under 20 %%)\n", measured_with_contacts,
                     measured_steps);
+  if (t_s_waiting_total_ms > kMostWaiting * t_s_total_ms)
+    lines +=
+        format("the solves waited %.3g %% of their time for a core (%.3g of %.3g ms): others used them\n",
+               100 * t_s_waiting_total_ms / t_s_total_ms, t_s_waiting_total_ms, t_s_total_ms);
   // Where no world moved (replay) there is no velocity to compare with.
   const bool simulated = steps > 0;
   lines += simulated ? format("%d steps, ", steps) : format("%d problems, ", measured_steps);

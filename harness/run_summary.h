@@ -11,6 +11,7 @@ namespace cleave {
 
 struct RunSummary {
   static constexpr int kListedFailures = 10;
+  static constexpr double kMostWaiting = 0.05;  // of the time of the solves, before it is said
 
   int rows = 0;
   int rows_ok = 0;
@@ -22,6 +23,8 @@ struct RunSummary {
   int unconverged_bounds = 0;  // steps on which the bounds of box-converged did not settle
   double worst_residual_m_per_s = 0;
   double worst_velocity_spread_m_per_s = 0;
+  double t_s_total_ms = 0;  // over all rows that say how long their solve waited for a core
+  double t_s_waiting_total_ms = 0;
   double wall_s = 0;
   bool interrupted = false;
   std::vector<std::string> failures;  // the first kListedFailures rows that are not ok, in words

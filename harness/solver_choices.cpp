@@ -13,6 +13,8 @@ SolveOptions solve_options(const RunOptions& options) {
   SolveOptions solve;
   solve.threads = options.threads;
   solve.sweeps = options.sweeps;
+  solve.predictor_sweeps = options.predictor_sweeps;
+  solve.max_iterations = options.max_iterations;
   solve.reuse_analysis = options.reuse_analysis;
   return solve;
 }

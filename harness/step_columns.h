@@ -10,7 +10,10 @@
 
 namespace cleave {
 
-// Options that are columns; the rest of the row unmeasured.
+// Options that say how problems are split and solved; the rest of the row unmeasured.
+StepRecord solve_columns(const RunOptions& options);
+
+// All options that are columns; the rest of the row unmeasured.
 StepRecord run_columns(const RunOptions& options);
 
 // Sizes, islands and fingerprint of a step's problem, from its arrays alone.

@@ -8,9 +8,9 @@
 namespace cleave {
 namespace {
 
-// Times are read by people, other numbers must be comparable digit by digit.
-std::string cell_text(std::string_view column, double value) {
-  if (column.starts_with("t_") || std::isnan(value)) return number_text(value);
+// The machine's numbers are read by people, all others must be comparable digit by digit.
+std::string cell_text(ColumnOf of, double value) {
+  if (of == ColumnOf::machine || std::isnan(value)) return number_text(value);
   char text[32];
   return std::string(text, std::snprintf(text, sizeof text, "%.17g", value));
 }
@@ -22,9 +22,9 @@ std::string quoted_where_needed(const std::string& text) {
   return quoted + '"';
 }
 
-std::string cell_text(std::string_view, const std::string& value) { return quoted_where_needed(value); }
-std::string cell_text(std::string_view, int value) { return std::to_string(value); }
-std::string cell_text(std::string_view, std::uint64_t value) { return std::to_string(value); }
+std::string cell_text(ColumnOf, const std::string& value) { return quoted_where_needed(value); }
+std::string cell_text(ColumnOf, int value) { return std::to_string(value); }
+std::string cell_text(ColumnOf, std::uint64_t value) { return std::to_string(value); }
 
 }  // namespace
 
@@ -51,6 +51,8 @@ void StepRecord::set_partition(const PartitionMetrics& metrics) {
 void StepRecord::set_summary(const SolveSummary& summary) {
   if (!summary.strategy.empty()) strategy = summary.strategy;
   if (!summary.kernel.empty()) kernel = summary.kernel;
+  auto_reason = summary.auto_reason;
+  if (!has_result(summary.status)) return;
   interface_unknowns = summary.interface_unknowns;
   factor_mflop_local = summary.factor_mflop_local;
   factor_mflop_interface = summary.factor_mflop_interface;
@@ -63,7 +65,6 @@ void StepRecord::set_summary(const SolveSummary& summary) {
   factorizations = summary.factorizations;
   fallbacks = summary.fallbacks;
   refinements = summary.refinements;
-  auto_reason = summary.auto_reason;
 }
 
 void StepRecord::set_verdict(const ResidualReport& report) {
@@ -74,13 +75,14 @@ void StepRecord::set_verdict(const ResidualReport& report) {
   largest_free_velocity_m_per_s = report.largest_free_velocity_m_per_s;
   kinetic_energy_j = report.kinetic_energy_j;
   energy_excess_j = report.energy_excess_j;
+  residual_relative = report.residual_relative;
 }
 
 std::vector<Column> columns() {
   std::vector<Column> list;
   const StepRecord record;
-  visit_fields(record, [&list](std::string_view name, const auto&, const char* help) {
-    list.push_back({std::string(name), help});
+  visit_fields(record, [&list](std::string_view name, const auto&, const char* help, ColumnOf of) {
+    list.push_back({std::string(name), help, of == ColumnOf::machine});
   });
   return list;
 }
@@ -94,8 +96,8 @@ std::string csv_header() {
 
 std::string csv_line(const StepRecord& record) {
   std::string line;
-  visit_fields(record, [&line](std::string_view name, const auto& value, const char*) {
-    line += cell_text(name, value) + ",";
+  visit_fields(record, [&line](std::string_view, const auto& value, const char*, ColumnOf of) {
+    line += cell_text(of, value) + ",";
   });
   line.back() = '\n';
   return line;

@@ -2,12 +2,12 @@
 //
 // visit_fields is the only list of fields. The CSV header, the CSV rows and the manifest's description of the
 // columns are all drawn from it, in its order. To add a column: a member, and a line at the end of
-// visit_fields.
+// visit_fields: visit_machine where two runs of the same experiment may differ, visit elsewhere.
 //
 // Counts that were not measured are -1, numbers that were not measured NaN (printed "nan"), names "-". A
 // solver that ignores partitions has "-" as partitioner and refiner and leaves the partition's columns
-// unmeasured. Columns named t_... are times in milliseconds; they and `threads` are the only ones that may
-// differ between two runs of the same experiment.
+// unmeasured. Columns named t_... are times in milliseconds. A solve that was refused, crashed or found no
+// memory measured nothing.
 #pragma once
 
 #include <array>
@@ -23,6 +23,13 @@
 #include "solver/step_solver.h"
 
 namespace cleave {
+
+// In the last column of every row. Counts up when a column changes its meaning; new ones come at the end.
+inline constexpr const char* kStepsSchema = "cleave-steps-2";
+
+// Who a column is about. The machine's may differ between two runs of the same experiment, all others may
+// not.
+enum class ColumnOf { experiment, machine };
 
 inline constexpr double kUnmeasured = std::numeric_limits<double>::quiet_NaN();
 
@@ -72,6 +79,21 @@ struct StepRecord {
   double joint_drift_m = kUnmeasured, last_body_z_m = kUnmeasured;
   std::string status_reason = "-";
   double part_condition_max = kUnmeasured;
+  double t_s_cpu_ms = kUnmeasured, t_s_waiting_ms = kUnmeasured, t_s_max_ms = kUnmeasured;
+  double peak_memory_mb = kUnmeasured;
+  double residual_relative = kUnmeasured;
+  // The options that can change a cell and have no column above.
+  double dt_s = kUnmeasured, mu = kUnmeasured, cfm = kUnmeasured, erp = kUnmeasured;
+  double gravity_m_per_s2 = kUnmeasured, friction_force_n = kUnmeasured, match_tolerance = kUnmeasured;
+  int contact_cap = -1;
+  std::string edge_weight = "-", degree = "-", degree_scope = "-";
+  int as_printed = -1, skip_small_islands = -1;
+  int sweeps = -1, predictor_sweeps = -1, max_iterations = -1, reuse_analysis = -1, cold = -1;
+  int quickstep_iterations = -1, ode_step_max_rows = -1;
+  std::string ode_friction = "-", mode = "-", advance = "-";
+  int steps = -1;
+  std::string scene_options = "-";
+  std::string schema_version = kStepsSchema;
 
   // Parts of a row that are copied from one result each.
   void set_partition_before(const PartitionMetrics& metrics);
@@ -88,10 +110,16 @@ struct StepRecord {
   }
 };
 
-// Calls visit(column name, member, what it is) for every column in order. Record: StepRecord or const
-// StepRecord.
+// Calls visitor(column name, member, what it is, ColumnOf) for every column in order. Record: StepRecord or
+// const StepRecord.
 template <class Record, class Visitor>
-void visit_fields(Record& r, Visitor&& visit) {
+void visit_fields(Record& r, Visitor&& visitor) {
+  const auto visit = [&](std::string_view name, auto& member, const char* help) {
+    visitor(name, member, help, ColumnOf::experiment);
+  };
+  const auto visit_machine = [&](std::string_view name, auto& member, const char* help) {
+    visitor(name, member, help, ColumnOf::machine);
+  };
   visit("run_id", r.run_id,
         "fingerprint of all options but threads, out and force: equal experiments have equal ids");
   visit("scene", r.scene, "name of the scene");
@@ -105,7 +133,7 @@ void visit_fields(Record& r, Visitor&& visit) {
   visit("strategy", r.strategy, "strategy that ran at the end");
   visit("kernel", r.kernel, "kernel that ran at the end");
   visit("friction", r.friction, "friction model");
-  visit("threads", r.threads, "OpenMP threads");
+  visit_machine("threads", r.threads, "OpenMP threads");
   visit("status", r.status,
         "ok, not_converged, timeout, out_of_memory, diverged, refused, crashed or skipped; ok means solved "
         "and within "
@@ -146,22 +174,23 @@ void visit_fields(Record& r, Visitor&& visit) {
   visit("factor_mflop_local", r.factor_mflop_local, "Mflop of one factorisation of all subsystem interiors");
   visit("factor_mflop_interface", r.factor_mflop_interface,
         "Mflop of one factorisation of the interface system");
-  visit("t_collide_ms", r.t_collide_ms, "collision detection (once per step)");
-  visit("t_extract_ms", r.t_extract_ms, "building the rows (once per step)");
-  visit("t_predict_ms", r.t_predict_ms, "predicting the friction bounds (once per step)");
-  visit("t_graph_ms", r.t_graph_ms, "building the body graph, median over the repeats");
-  visit("t_partition_ms", r.t_partition_ms, "growing the parts, median over the repeats");
-  visit("t_refine_ms", r.t_refine_ms, "refining the parts, median over the repeats");
-  visit("t_pr_ms", r.t_pr_ms, "growing + refining, median over the repeats");
-  visit("t_s_ms", r.t_s_ms, "solve, median over the repeats (the lower middle one of an even number)");
-  visit("t_s_min_ms", r.t_s_min_ms, "solve, least over the repeats");
+  visit_machine("t_collide_ms", r.t_collide_ms, "collision detection (once per step)");
+  visit_machine("t_extract_ms", r.t_extract_ms, "building the rows (once per step)");
+  visit_machine("t_predict_ms", r.t_predict_ms, "predicting the friction bounds (once per step)");
+  visit_machine("t_graph_ms", r.t_graph_ms, "building the body graph, median over the repeats");
+  visit_machine("t_partition_ms", r.t_partition_ms, "growing the parts, median over the repeats");
+  visit_machine("t_refine_ms", r.t_refine_ms, "refining the parts, median over the repeats");
+  visit_machine("t_pr_ms", r.t_pr_ms, "growing + refining, median over the repeats");
+  visit_machine("t_s_ms", r.t_s_ms,
+                "solve, median over the repeats (the lower middle one of an even number)");
+  visit_machine("t_s_min_ms", r.t_s_min_ms, "solve, least over the repeats");
   for (std::size_t stage = 0; stage < kStageNames.size(); ++stage)
-    visit("t_s_" + std::string(kStageNames[stage]) + "_ms", r.t_s_stage_ms[stage],
-          "stage of the solve that took t_s_ms");
-  visit("t_s_other_ms", r.t_s_other_ms, "t_s_ms less its named stages");
+    visit_machine("t_s_" + std::string(kStageNames[stage]) + "_ms", r.t_s_stage_ms[stage],
+                  "stage of the solve that took t_s_ms");
+  visit_machine("t_s_other_ms", r.t_s_other_ms, "t_s_ms less its named stages");
   for (std::size_t i = 0; i < kModelWorkers.size(); ++i)
-    visit("t_s_model_p" + std::to_string(kModelWorkers[i]) + "_ms", r.t_s_model_ms[i],
-          "modelled solve on so many workers; meaningful in one-thread runs");
+    visit_machine("t_s_model_p" + std::to_string(kModelWorkers[i]) + "_ms", r.t_s_model_ms[i],
+                  "solve modelled on so many workers from the task times of one-thread runs");
   visit("iterations", r.iterations, "iterations of the strategy");
   visit("factorizations", r.factorizations, "numeric factorisations");
   visit("fallbacks", r.fallbacks, "hand-overs from one strategy to the next");
@@ -189,18 +218,55 @@ void visit_fields(Record& r, Visitor&& visit) {
   visit("status_reason", r.status_reason, "why the status is not ok, as far as the solver says");
   visit("part_condition_max", r.part_condition_max,
         "largest condition number of a part's matrix with all its interior rows free, 1-norm, SI units");
+  visit_machine("t_s_cpu_ms", r.t_s_cpu_ms, "processor time of all threads in the solve that took t_s_ms");
+  visit_machine("t_s_waiting_ms", r.t_s_waiting_ms,
+                "time in which threads of that solve were ready to run and had no core, summed over threads");
+  visit_machine("t_s_max_ms", r.t_s_max_ms, "solve, greatest over the repeats");
+  visit_machine("peak_memory_mb", r.peak_memory_mb, "largest resident set of the process so far, 1e6 bytes");
+  visit("residual_relative", r.residual_relative,
+        "residual_m_per_s over the largest entry of v0, J v0 and b, in the problem's own units");
+  visit("dt_s", r.dt_s, "step h");
+  visit("mu", r.mu, "friction coefficient of all contacts");
+  visit("cfm", r.cfm, "constraint force mixing; compliance C = cfm / h");
+  visit("erp", r.erp, "share of a position error removed per step");
+  visit("gravity_m_per_s2", r.gravity_m_per_s2, "gravity along -z");
+  visit("friction_force_n", r.friction_force_n, "largest friction force of the friction model constant");
+  visit(
+      "match_tolerance", r.match_tolerance,
+      "how far a contact may move and still be that of the last step, in least extents of the smaller shape");
+  visit("contact_cap", r.contact_cap, "most contact points of a geom pair");
+  visit("edge_weight", r.edge_weight, "unit of edge weights in mix, kl and fm");
+  visit("degree", r.degree, "what the degree of a body counts");
+  visit("degree_scope", r.degree_scope, "where degrees are counted: whole graph or bodies left");
+  visit("as_printed", r.as_printed, "1 with the paper's algorithms to the letter, else 0");
+  visit("skip_small_islands", r.skip_small_islands, "1 where small islands are one part each, else 0");
+  visit("sweeps", r.sweeps, "Gauss-Seidel sweeps of pgs");
+  visit("predictor_sweeps", r.predictor_sweeps, "Gauss-Seidel sweeps that pivot starts from");
+  visit("max_iterations", r.max_iterations, "iterations after which a strategy gives up");
+  visit("reuse_analysis", r.reuse_analysis, "1 where the symbolic analysis may be kept, else 0");
+  visit("cold", r.cold, "1 where solves start from zero impulses, 0 where from those of the last step");
+  visit("quickstep_iterations", r.quickstep_iterations, "iterations of ode-quickstep");
+  visit("ode_step_max_rows", r.ode_step_max_rows, "ode-step refuses a step of more rows");
+  visit("ode_friction", r.ode_friction, "friction bounds of ODE's own solvers: limits or pyramid");
+  visit("mode", r.mode, "lockstep or separate worlds");
+  visit("advance", r.advance, "solver that advances the world in lockstep");
+  visit("steps", r.steps, "steps that were to be simulated");
+  visit("scene_options", r.scene_options, "the scene's own options, name=value;name=value");
+  visit("schema_version", r.schema_version, "what the columns of this row mean");
 }
 
 // "run_id,scene,...\n"
 std::string csv_header();
 
-// One line with its "\n". Times are printed in the shortest form that reads back unchanged, other numbers
-// with 17 significant digits; commas, quotes and line ends inside a text are quoted as RFC 4180 has it.
+// One line with its "\n". The machine's numbers are printed in the shortest form that reads back unchanged,
+// other numbers with 17 significant digits; commas, quotes and line ends inside a text are quoted as RFC 4180
+// has it.
 std::string csv_line(const StepRecord& record);
 
 // Column names and what they are, in order.
 struct Column {
   std::string name, help;
+  bool machine;  // may differ between two runs of the same experiment
 };
 std::vector<Column> columns();
 

@@ -15,6 +15,10 @@ REFINERS = ("none", "kl", "fm")
 NO_PARTITIONER = "-"  # of a solver that works on the whole system
 PAPER_TABLE1 = pathlib.Path(__file__).resolve().parent / "paper_table1.csv"
 
+# The judge's limit of an exact answer (kExactLimit in solver/step_problem.h): residuals up to this many times
+# max(1, largest free velocity) m/s.
+EXACT_LIMIT = 1e-9
+
 
 class ResultError(Exception):
     """Results that cannot be read; the text is for the user."""

@@ -5,10 +5,11 @@ import math
 import textwrap
 
 from cleave_results import counted
-from timing_table import Cell
+from timing_table import MOST_WAITING, Cell
 
 GAP = "-"
 MARK_HELP = "* lowest t_s + t_pr of a scene among combinations without a failed or missing step."
+WAITED = "‡"
 CELL_HELP = "t_s solve, t_pr partition + refine, mean ms a step; ratio = ours / paper of t_s + t_pr."
 
 
@@ -30,6 +31,7 @@ def format_text(tables, header):
         lines.append(f"{'':14}|{times}{times}{ratios}")
         lines += [_text_row(cell) for cell in table.cells]
         lines += _remarks(table.cells)
+        lines += _wrapped(scene_notes([table]))
     return "\n".join(lines) + "\n"
 
 
@@ -39,14 +41,38 @@ def _remarks(cells):
     for cell in cells:
         if cell.remark:
             names.setdefault(cell.remark, []).append(f"{cell.partitioner} {cell.refiner}")
-    texts = [f"! {remark}: {', '.join(combinations)}" for remark, combinations in names.items()]
+    return _wrapped(f"! {remark}: {', '.join(combinations)}" for remark, combinations in names.items())
+
+
+def _wrapped(texts):
     return [line for text in texts for line in textwrap.wrap(text, 105, subsequent_indent="  ")]
+
+
+def scene_notes(tables):
+    """What has to be known before comparing: runs of another size than the paper's, and disturbed ones."""
+    notes = [
+        f"{table.title} is not the paper's run: {table.differs}; its ratios compare different problems."
+        for table in tables if table.differs
+    ]
+    waited = [
+        f"{table.title} {cell.partitioner} {cell.refiner} {100 * cell.waiting:.0f} %" for table in tables
+        for cell in table.cells if cell.waited
+    ]
+    if waited:
+        notes.append(f"{WAITED} The solves waited more than {100 * MOST_WAITING:.0f} % of t_s for a core, so "
+                     f"other programs are in these times: {', '.join(waited)}.")
+    return notes
 
 
 def _text_row(cell):
     ratios = "".join(f"{format_ratio(ratio):>8}" for ratio in cell.ours / cell.paper)
     return (f"{cell.partitioner:<7}{cell.refiner:<7}|" + _text_times(cell.ours, cell.ours_lowest, 3) +
-            _text_times(cell.paper, cell.paper_lowest, 1) + f"{ratios}  |{'!' if cell.remark else ''}")
+            _text_times(cell.paper, cell.paper_lowest, 1) + f"{ratios}  |" + ("!" if cell.remark else "") +
+            _waited(cell))
+
+
+def _waited(cell):
+    return WAITED if cell.waited else ""
 
 
 def _text_times(times, lowest, decimals):
@@ -57,12 +83,12 @@ def _text_times(times, lowest, decimals):
 def format_csv(tables, header):
     """One line a cell; empty where a value is missing. The explanation goes to comment lines."""
     out = io.StringIO()
-    out.writelines(f"# {line}\n" for line in header)
+    out.writelines(f"# {line}\n" for line in [*header, *scene_notes(tables)])
     writer = csv.writer(out, lineterminator="\n")
     writer.writerow([
         "scene", "partitioner", "refiner", "t_s_ms", "t_pr_ms", "total_ms", "paper_t_s_ms", "paper_t_pr_ms",
         "paper_total_ms", "ratio_t_s", "ratio_t_pr", "ratio_total", "lowest", "paper_lowest", "steps_ok",
-        "steps_failed", "steps_missing"
+        "steps_failed", "steps_missing", "waiting_share"
     ])
     for table in tables:
         for cell in table.cells:
@@ -74,7 +100,8 @@ def format_csv(tables, header):
                 table.scene, cell.partitioner, cell.refiner,
                 *("" if math.isnan(value) else f"{value:.6g}" for value in numbers),
                 int(cell.ours_lowest),
-                int(cell.paper_lowest), cell.ok, cell.failed, cell.missing
+                int(cell.paper_lowest), cell.ok, cell.failed, cell.missing,
+                "" if math.isnan(cell.waiting) else f"{cell.waiting:.3g}"
             ])
     return out.getvalue()
 
@@ -88,12 +115,13 @@ def format_markdown(tables, header):
     for cells in _across(tables):
         entries = []
         for cell in cells:
-            ours = _pair(cell.ours, 2, 3) + (f" ({cell.remark})" if cell.remark else "")
+            ours = _pair(cell.ours, 2, 3) + _waited(cell) + (f" ({cell.remark})" if cell.remark else "")
             paper = _pair(cell.paper, 1, 1)
             entries.append(f"{_bold(ours, cell.ours_lowest)} (paper {_bold(paper, cell.paper_lowest)}), "
                            f"×{format_ratio((cell.ours / cell.paper)[2])}")
         lines.append(f"| {cells[0].partitioner} {cells[0].refiner} | " + " | ".join(entries) + " |")
-    return "\n".join([*lines, "", CELL_HELP + " Bold: lowest total of the scene.", *header]) + "\n"
+    help_line = CELL_HELP + " Bold: lowest total of the scene."
+    return "\n".join([*lines, "", help_line, *header, *scene_notes(tables)]) + "\n"
 
 
 def _bold(text, bold):
@@ -121,21 +149,23 @@ def format_latex(tables, header):
         for cell in cells:
             ours, paper = _pair(cell.ours, 2, 3), _pair(cell.paper, 1, 1)
             entries += [
-                _latex_bold(ours, cell.ours_lowest) + ("$^\\dagger$" if cell.remark else ""),
+                _latex_bold(ours, cell.ours_lowest) + ("$^\\dagger$" if cell.remark else "") +
+                ("$^\\ddagger$" if cell.waited else ""),
                 _latex_bold(paper, cell.paper_lowest),
                 format_ratio((cell.ours / cell.paper)[2])
             ]
         lines.append(" & ".join(entries) + " \\\\")
     remarks = ["$^\\dagger$ steps failed or missing, not in the mean."] if any(
         cell.remark for table in tables for cell in table.cells) else []
-    caption = " ".join(
-        [CELL_HELP.replace("t_s", "$t_s$").replace("t_pr", "$t_{pr}$"), *map(_latex, header), *remarks])
+    cell_help = CELL_HELP.replace("t_s", "$t_s$").replace("t_pr", "$t_{pr}$")
+    caption = " ".join([cell_help, *map(_latex, [*header, *scene_notes(tables)]), *remarks])
     lines += ["\\bottomrule", "\\end{tabular}", "\\caption{" + caption + "}", "\\end{table*}"]
     return "\n".join(lines) + "\n"
 
 
 def _latex(text):
-    return "".join("\\" + letter if letter in "_%#&$" else letter for letter in text)
+    text = "".join("\\" + letter if letter in "_%#&$" else letter for letter in text)
+    return text.replace(WAITED, "$^\\ddagger$")
 
 
 def _latex_bold(text, bold):

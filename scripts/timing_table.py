@@ -10,7 +10,18 @@ from cleave_results import NO_PARTITIONER, PARTITIONERS, REFINERS, SCENES, Resul
 NEEDED = ("scene", "seed", "step", "partitioner", "refiner", "solver", "threads", "status", "t_s_ms",
           "t_pr_ms")
 # A mean over rows that differ in one of these would mean nothing.
-SAME_IN_A_SCENE = ("solver", "threads", "friction", "max_bodies", "tau_mr", "tau_mix", "max_growth")
+SAME_IN_A_SCENE = ("solver", "threads", "friction", "max_bodies", "tau_mr", "tau_mix", "max_growth", "dt_s",
+                   "mu", "cfm", "erp", "gravity_m_per_s2", "friction_force_n", "match_tolerance",
+                   "contact_cap", "edge_weight", "degree", "degree_scope", "as_printed", "skip_small_islands",
+                   "cold")
+# Nor over rows of a solver with other options.
+SAME_SOLVER = ("predictor_sweeps", "max_iterations", "reuse_analysis")
+# What else is looked at where it is there.
+READ_TOO = ("bodies", "steps", "t_s_waiting_ms")
+# The paper's runs: bodies of each scene, and steps of all.
+PAPER_BODIES = {"chain_drop": 100, "log_tower": 201, "rock_pile": 200, "large_rock_pile": 600}
+PAPER_STEPS = 500
+MOST_WAITING = 0.05  # of t_s, for a core; above it a mean says more of the machine's other work
 
 
 @dataclasses.dataclass
@@ -40,12 +51,17 @@ class Cell:
     ok: int = 0  # measured steps that ours is the mean of
     failed: int = 0  # rows with another status; not in the mean
     missing: int = 0  # steps of the scene without a row of this combination
+    waiting: float = math.nan  # share of t_s in which threads waited for a core; nan where unknown
     ours_lowest: bool = False
     paper_lowest: bool = False
 
     @property
     def complete(self):
         return self.ok > 0 and self.failed == 0 and self.missing == 0
+
+    @property
+    def waited(self):
+        return self.waiting > MOST_WAITING
 
     @property
     def remark(self):
@@ -64,6 +80,7 @@ class SceneTable:
     threads: str
     solver: str
     cells: list  # Cell, in the paper's order
+    differs: str = ""  # how the runs differ from the paper's in size; empty where they do not
 
     @property
     def title(self):
@@ -90,7 +107,7 @@ def _value(row, column):
 
 
 def _scene_table(scene, rows, paper):
-    for column in SAME_IN_A_SCENE:
+    for column in (*SAME_IN_A_SCENE, *SAME_SOLVER):
         values = sorted({row[column] for row in rows if column in row})
         if len(values) > 1:
             raise ResultError(f"rows of {scene} mix {column} {', '.join(values)}; "
@@ -109,7 +126,21 @@ def _scene_table(scene, rows, paper):
     cells = [_cell(scene, names, groups[names], len(steps), paper) for names in groups]
     _mark_lowest([cell for cell in cells if cell.complete], "ours")
     _mark_lowest(cells, "paper")
-    return SceneTable(scene, len(steps), rows[0]["threads"], rows[0]["solver"], cells)
+    return SceneTable(scene, len(steps), rows[0]["threads"], rows[0]["solver"], cells,
+                      _differences(scene, rows))
+
+
+def _differences(scene, rows):
+    """'60 steps (paper 500), 12 bodies (paper 200)'; empty for a scene that the paper does not have."""
+    if scene not in PAPER_BODIES:
+        return ""
+    wanted = (("steps", PAPER_STEPS), ("bodies", PAPER_BODIES[scene]))
+    parts = []
+    for column, paper in wanted:
+        values = {row.get(column, "unknown") for row in rows}
+        if values != {str(paper)}:
+            parts.append(f"{' and '.join(sorted(values))} {column} (paper {paper})")
+    return ", ".join(parts)
 
 
 def _cell(scene, names, rows, steps, paper):
@@ -118,6 +149,7 @@ def _cell(scene, names, rows, steps, paper):
     cell.ok = len(measured)
     if measured:
         cell.ours = Times(_mean(measured, "t_s_ms"), _mean(measured, "t_pr_ms"))
+        cell.waiting = _waiting_share(measured)
     if (scene, *names) in paper:
         cell.paper = Times(*paper[(scene, *names)])
     return cell
@@ -128,6 +160,12 @@ def _mean(rows, column):
         if not math.isfinite(row.number(column)):
             raise ResultError(f"{row.path}, line {row.line}: status ok, but {column} is '{row[column]}'")
     return math.fsum(row.number(column) for row in rows) / len(rows)
+
+
+def _waiting_share(rows):
+    known = [row for row in rows if "t_s_waiting_ms" in row and math.isfinite(row.number("t_s_waiting_ms"))]
+    total = math.fsum(row.number("t_s_ms") for row in known)
+    return math.fsum(row.number("t_s_waiting_ms") for row in known) / total if total > 0 else math.nan
 
 
 def _mark_lowest(cells, which):

@@ -44,7 +44,7 @@ std::string rounding_note(const PreparedStep& step, const Solution& solution) {
     largest = std::max(largest, step.diagonal()[r] * std::abs(solution.impulse[r]));
   }
   const double rounding = std::numeric_limits<double>::epsilon() * largest;
-  if (!(rounding > exact_limit_m_per_s(step))) return "";
+  if (!(rounding > step.exact_limit_m_per_s())) return "";
   std::ostringstream text;
   text << ", which is below the rounding of its impulses, " << rounding << " m/s";
   return text.str();
@@ -63,6 +63,7 @@ class DirectSolver : public StepSolver {
         kernel_name_(kernel),
         splits_(splits),
         options_(options),
+        clock_(options.threads),
         kernel_(std::move(made)),
         state_(options, clock_) {}
 
@@ -165,7 +166,7 @@ bool DirectSolver::run_proximal(SolveSummary& summary) {
     if (!run_chain(summary, proximal_best_.impulse)) break;
   }
   proximal_best_.restore(state_);
-  return proximal_best_.residual <= exact_limit_m_per_s(step_);
+  return proximal_best_.residual <= step_.exact_limit_m_per_s();
 }
 
 // One run of the strategies, on the problem itself (delta 0) or by proximal steps. The impulses that stay are

@@ -34,6 +34,7 @@ class PreparedStep {
   double least_relative_compliance() const {
     return least_relative_compliance_;
   }  // min C_r / d_r; inf without rows
+  double exact_limit_m_per_s() const { return kExactLimit * velocity_scale_; }
 
   // v (n, 6) = v0 + M^-1 J^T lambda
   void velocity(std::span<const double> impulse, std::span<double> v) const;

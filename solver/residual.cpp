@@ -18,7 +18,6 @@ using Matrix6 = Eigen::Matrix<Real, 6, 6>;
 using ConstVector6 = Eigen::Map<const Eigen::Matrix<double, 6, 1>>;
 using ConstMatrix6 = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>;
 
-constexpr double kExactLimit = 1e-9;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // std::max drops a NaN that comes second; here a NaN on either side stays.
@@ -76,6 +75,23 @@ double find_row_residual(const StepProblem& problem, const std::vector<BodyState
   return static_cast<double>(std::abs(std::clamp(slack, least, most)));
 }
 
+// The largest entry of |v0|, |J v0| and |b|.
+double find_velocity_scale(const StepProblem& problem, double largest_free_velocity) {
+  double largest = largest_free_velocity;
+  for (int r = 0; r < problem.row_count(); ++r) {
+    Real before = 0;  // (J v0)_r
+    for (int side = 0; side < 2; ++side) {
+      const int body = problem.row_body[2 * r + side];
+      if (body < 0) continue;
+      before +=
+          jacobian_block(problem, r, side).dot(ConstVector6(&problem.free_velocity[6 * body]).cast<Real>());
+    }
+    largest = larger_or_nan(largest, static_cast<double>(std::abs(before)));
+    largest = larger_or_nan(largest, std::abs(problem.rhs[r]));
+  }
+  return largest;
+}
+
 void judge_rows(const StepProblem& problem, const std::vector<BodyState>& bodies,
                 std::span<const double> impulse, ResidualReport& report) {
   for (int r = 0; r < problem.row_count(); ++r) {
@@ -106,8 +122,9 @@ void judge_energy(const StepProblem& problem, const std::vector<BodyState>& bodi
 
 // An infinite impulse can meet an infinite bound and look consistent, so nothing but NaN is reported for it.
 void report_nan(ResidualReport& report) {
-  report.residual_m_per_s = report.residual_bilateral_m_per_s = report.residual_normal_m_per_s =
-      report.residual_friction_m_per_s = report.energy_excess_j = report.kinetic_energy_j = kNan;
+  report.residual_m_per_s = report.residual_relative = report.residual_bilateral_m_per_s =
+      report.residual_normal_m_per_s = report.residual_friction_m_per_s = report.energy_excess_j =
+          report.kinetic_energy_j = kNan;
   std::fill(report.velocity.begin(), report.velocity.end(), kNan);
 }
 
@@ -132,6 +149,8 @@ ResidualReport judge(const StepProblem& problem, std::span<const double> impulse
     for (int k = 0; k < 6; ++k) report.velocity[6 * i + k] = static_cast<double>(bodies[i].velocity[k]);
   }
   judge_rows(problem, bodies, impulse, report);
+  const double scale = find_velocity_scale(problem, report.largest_free_velocity_m_per_s);
+  report.residual_relative = report.residual_m_per_s == 0 ? 0 : report.residual_m_per_s / scale;
   judge_energy(problem, bodies, impulse, report);
   report.exact = report.residual_m_per_s <= report.limit_m_per_s;
   return report;

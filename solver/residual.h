@@ -7,7 +7,10 @@
 //     residual = max_r d_r | lambda_r - clamp(lambda_r - w_r / d_r, lo_r, hi_r) |          m/s (rad/s)
 //
 // which is zero exactly at the solution. One limit everywhere: exact means
-// residual <= 1e-9 * max(1, largest |v0| entry).
+// residual <= kExactLimit * max(1, largest |v0| entry).
+//
+// The limit is meant for metres and seconds. In other units, or where everything creeps, it may be loose: the
+// residual in units of the problem's own velocities, the largest entry of v0, J v0 and b, shows that.
 #pragma once
 
 #include <span>
@@ -22,13 +25,15 @@ struct ResidualReport {
   double residual_bilateral_m_per_s = 0;  // over the rows of one kind; 0 when there is none
   double residual_normal_m_per_s = 0;
   double residual_friction_m_per_s = 0;
+  double residual_relative =
+      0;  // residual / largest entry of |v0|, |J v0| and |b|; 0 where it is zero itself
   double largest_free_velocity_m_per_s = 0;  // largest |entry| of v0
   // (1/2 v^T M v - 1/2 v0^T M v0) - lambda^T b: an exact step has <= 0 where lo <= 0 <= hi.
   double energy_excess_j = 0;
-  double kinetic_energy_j = 0;   // 1/2 v^T M v
-  double limit_m_per_s = 1e-9;   // 1e-9 * max(1, largest_free_velocity_m_per_s)
-  bool exact = false;            // residual within the limit (false for NaN)
-  std::vector<double> velocity;  // (n, 6) v recomputed from lambda
+  double kinetic_energy_j = 0;         // 1/2 v^T M v
+  double limit_m_per_s = kExactLimit;  // kExactLimit * max(1, largest_free_velocity_m_per_s)
+  bool exact = false;                  // residual within the limit (false for NaN)
+  std::vector<double> velocity;        // (n, 6) v recomputed from lambda
 };
 
 // impulse: (m). NaN or infinite impulses give a NaN residual and exact = false.

@@ -13,9 +13,9 @@ double makespan_ms(std::span<const double> sorted_descending_ms, int workers,
 }
 
 void StageClock::start() {
-  times_ = StageTimes{};
-  parallel_ms_ = 0;
-  makespan_ms_.fill(0);
+  times_.stage_ms.fill(0);
+  task_ms_.clear();
+  stage_end_.clear();
   begin_ = Clock::now();
 }
 
@@ -24,21 +24,28 @@ void StageClock::add(Stage stage, double milliseconds) {
 }
 
 void StageClock::add_tasks(std::span<const double> task_ms) {
-  if (task_ms.empty()) return;
-  sorted_ms_.assign(task_ms.begin(), task_ms.end());
-  std::sort(sorted_ms_.begin(), sorted_ms_.end(), std::greater<>());
-  for (double task : sorted_ms_) parallel_ms_ += task;
-  for (std::size_t k = 0; k < kModelWorkers.size(); ++k) {
-    makespan_ms_[k] += makespan_ms(sorted_ms_, kModelWorkers[k], worker_ms_);
-  }
+  if (!models_) return;
+  task_ms_.insert(task_ms_.end(), task_ms.begin(), task_ms.end());
+  stage_end_.push_back(task_ms_.size());
 }
 
 StageTimes StageClock::stop() {
   times_.total_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin_).count();
-  for (std::size_t k = 0; k < kModelWorkers.size(); ++k) {
-    times_.model_ms[k] = times_.total_ms - parallel_ms_ + makespan_ms_[k];
-  }
+  if (models_) model();
   return times_;
+}
+
+// Total less what the tasks took, plus what they would take on so many workers.
+void StageClock::model() {
+  times_.model_ms.fill(times_.total_ms);
+  for (std::size_t stage = 0, begin = 0; stage < stage_end_.size(); begin = stage_end_[stage++]) {
+    const std::span<double> tasks(task_ms_.data() + begin, stage_end_[stage] - begin);
+    std::ranges::sort(tasks, std::greater<>());
+    const double on_one_ms = makespan_ms(tasks, 1, worker_ms_);
+    for (std::size_t k = 0; k < kModelWorkers.size(); ++k) {
+      times_.model_ms[k] += makespan_ms(tasks, kModelWorkers[k], worker_ms_) - on_one_ms;
+    }
+  }
 }
 
 }  // namespace cleave

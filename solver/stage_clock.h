@@ -3,11 +3,14 @@
 // A parallel stage is a set of independent tasks (one per subsystem, or per tile of the interface). Its
 // modelled makespan on p workers gives the longest task first to the worker that is free first; a solve on p
 // workers is then modelled as the sum of the makespans of its parallel stages plus all serial time. Task
-// times mean something only when measured on one thread.
+// times add up to wall time on one thread only, so a solve on more threads has no model. The model is made
+// after the clock has stopped: during the solve task times are only put down.
 #pragma once
 
 #include <array>
 #include <chrono>
+#include <cstddef>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -30,29 +33,44 @@ inline constexpr std::array<std::string_view, 9> kStageNames = {
     "factor_interface", "solve",   "check",    "refine"};
 inline constexpr std::array<int, 5> kModelWorkers = {1, 2, 4, 8, 16};
 
+// NaN where nothing was measured.
 struct StageTimes {
-  std::array<double, kStageNames.size()> stage_ms{};
-  double total_ms = 0;  // t_s; t_s_other = total - sum of the stages
-  std::array<double, kModelWorkers.size()> model_ms{};
+  std::array<double, kStageNames.size()> stage_ms = unmeasured<kStageNames.size()>();
+  double total_ms = kNotTimed;  // t_s; t_s_other = total - sum of the stages
+  std::array<double, kModelWorkers.size()> model_ms = unmeasured<kModelWorkers.size()>();
+
+ private:
+  static constexpr double kNotTimed = std::numeric_limits<double>::quiet_NaN();
+  template <std::size_t N>
+  static constexpr std::array<double, N> unmeasured() {
+    std::array<double, N> values{};
+    values.fill(kNotTimed);
+    return values;
+  }
 };
 
 class StageClock {
  public:
   using Clock = std::chrono::steady_clock;
 
+  // threads: of the solves that are timed.
+  explicit StageClock(int threads = 1) : models_(threads == 1) {}
+
   void start();                                // begins a solve: all zero
   void add(Stage stage, double milliseconds);  // serial or parallel wall time of a stage
   // Tasks of one parallel stage that has just run (wall times in ms).
   void add_tasks(std::span<const double> task_ms);
-  StageTimes stop();  // ends the solve
+  StageTimes stop();  // ends the solve, then models it
 
  private:
   friend class StageTimer;
+  void model();
+
+  bool models_;
   bool timing_ = false;
   StageTimes times_;
-  double parallel_ms_ = 0;  // sum of all task times
-  std::array<double, kModelWorkers.size()> makespan_ms_{};
-  std::vector<double> sorted_ms_;
+  std::vector<double> task_ms_;         // of all parallel stages of the solve, one after the other
+  std::vector<std::size_t> stage_end_;  // where each of them ends in task_ms_
   std::vector<double> worker_ms_;
   Clock::time_point begin_;
 };
@@ -80,7 +98,7 @@ class StageTimer {
   StageClock::Clock::time_point begin_;
 };
 
-// Longest-task-first makespan of tasks on p workers. sorted and worker are scratch.
+// Longest-task-first makespan of tasks on p workers; worker_ms is scratch.
 double makespan_ms(std::span<const double> sorted_descending_ms, int workers, std::vector<double>& worker_ms);
 
 }  // namespace cleave

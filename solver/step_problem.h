@@ -19,6 +19,10 @@
 
 namespace cleave {
 
+// The one limit of an exact answer, for the judge and everyone who aims at it: a residual of at most this
+// times max(1, largest |v0| entry), m/s.
+inline constexpr double kExactLimit = 1e-9;
+
 enum class RowKind : std::uint8_t { bilateral = 0, normal = 1, friction = 2 };
 
 struct StepProblem {

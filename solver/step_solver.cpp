@@ -14,6 +14,11 @@ const char* to_string(SolveStatus status) {
   return names[static_cast<std::size_t>(status)];
 }
 
+bool has_result(SolveStatus status) {
+  return status == SolveStatus::ok || status == SolveStatus::not_converged ||
+         status == SolveStatus::timeout || status == SolveStatus::diverged;
+}
+
 SolveSummary StepSolver::solve(const StepProblem& problem, std::span<const int> part_of_body,
                                Solution& solution) {
   SolveSummary summary;

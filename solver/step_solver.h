@@ -18,11 +18,15 @@ namespace cleave {
 enum class SolveStatus { ok, not_converged, timeout, out_of_memory, diverged, refused, crashed, skipped };
 const char* to_string(SolveStatus status);
 
+// Whether a solve with this status left impulses that can be judged, and numbers about itself.
+bool has_result(SolveStatus status);
+
 struct SolveOptions {
   int threads = 1;                // >= 1
-  double target_m_per_s = 1e-11;  // residual aimed at; exact is judged at 1e-9
-  int max_iterations = 100;       // of the strategy; a miss is a status, not a result
-  int sweeps = 5;                 // Gauss-Seidel sweeps: predictor of pivot, length of pgs
+  double target_m_per_s = 1e-11;  // residual aimed at; exact is judged at kExactLimit
+  int max_iterations = 100;       // of every strategy that runs; a miss is a status, not a result
+  int predictor_sweeps = 40;      // Gauss-Seidel sweeps that pivot starts from
+  int sweeps = 5;                 // of pgs
   bool reuse_analysis = false;    // keep the symbolic analysis while parts stay and rows fit its pattern
 };
 

@@ -40,7 +40,8 @@ std::vector<Line> lines_of(const Table& table) {
 
 std::vector<Line> column_lines() {
   std::vector<Line> lines;
-  for (const Column& column : columns()) lines.push_back({column.name, column.help, ""});
+  for (const Column& column : columns())
+    lines.push_back({column.name, column.help, column.machine ? "the machine's" : ""});
   return lines;
 }
 

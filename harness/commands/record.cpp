@@ -16,6 +16,7 @@
 #include "harness/options_text.h"
 #include "harness/output_directory.h"
 #include "harness/problem_file.h"
+#include "harness/solver_choices.h"
 
 namespace cleave {
 namespace {
@@ -37,10 +38,67 @@ void keep_one(const Given& given, const std::string& option, std::vector<std::st
   names.resize(1);
 }
 
+bool uses_parts(const RunOptions& options) { return make_solver(options.advance, options)->uses_partition(); }
+
+// "" for a solver that has none.
+std::string strategy_of(const std::string& solver) {
+  const std::size_t colon = solver.find(':');
+  if (colon != std::string::npos) return solver.substr(0, colon);
+  for (const SolverRow& row : solver_table())
+    if (row.entry.name == solver && row.strategy != nullptr) return row.strategy;
+  return "";
+}
+
+bool has_strategy(const RunOptions& options) { return !strategy_of(options.advance).empty(); }
+
+// What --advance must be for an option to mean anything.
+struct UsedBy {
+  const char* option;
+  bool (*used)(const RunOptions& options);
+  const char* by;
+};
+constexpr const char* kParts = "a solver that works on parts";
+constexpr const char* kStrategies = "a solver with a strategy";
+constexpr UsedBy kUsedBy[] = {
+    {"partitioner", uses_parts, kParts},
+    {"refiner", uses_parts, kParts},
+    {"max-bodies", uses_parts, kParts},
+    {"tau-mr", uses_parts, kParts},
+    {"tau-mix", uses_parts, kParts},
+    {"max-growth", uses_parts, kParts},
+    {"edge-weight", uses_parts, kParts},
+    {"degree", uses_parts, kParts},
+    {"degree-scope", uses_parts, kParts},
+    {"as-printed", uses_parts, kParts},
+    {"skip-small-islands", uses_parts, kParts},
+    {"max-iterations", has_strategy, kStrategies},
+    {"reuse-analysis", has_strategy, kStrategies},
+    {"predictor-sweeps",
+     [](const RunOptions& options) {
+       const std::string strategy = strategy_of(options.advance);
+       return strategy == "pivot" || strategy == "auto";
+     },
+     "a solver of strategy pivot or auto"},
+    {"sweeps", [](const RunOptions& options) { return options.advance == "pgs"; }, "pgs"},
+    {"quickstep-iterations", [](const RunOptions& options) { return options.advance == "ode-quickstep"; },
+     "ode-quickstep"},
+    {"ode-step-max-rows", [](const RunOptions& options) { return options.advance == "ode-step"; },
+     "ode-step"},
+};
+
+// Only the solver of --advance runs, so an option that it does not use would do nothing.
+void check_used(const Given& given, const RunOptions& options) {
+  for (const UsedBy& row : kUsedBy)
+    if (given.contains(row.option) && !row.used(options))
+      throw std::invalid_argument(std::string("--") + row.option + ": --advance " + options.advance +
+                                  " does not use it; allowed with " + row.by);
+}
+
 RunOptions parse_record_options(Given given) {
   const auto at = given.extract("at");
   if (at.empty()) throw std::invalid_argument("--at: is required: the steps to record, such as 100,200,300");
   RunOptions options = parse_run_options(given);
+  check_used(given, options);
   keep_one(given, "partitioner", options.partitioners);
   keep_one(given, "refiner", options.refiners);
   options.solvers = {options.advance};

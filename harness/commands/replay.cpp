@@ -30,12 +30,14 @@ using Given = std::map<std::string, std::string>;
 
 // What concerns combinations; everything about the step itself comes from the files.
 bool has_option(const std::string& name) {
-  constexpr std::array<std::string_view, 20> with = {"partitioner",
+  constexpr std::array<std::string_view, 22> with = {"partitioner",
                                                      "refiner",
                                                      "solver",
                                                      "strategy",
                                                      "kernel",
                                                      "sweeps",
+                                                     "predictor-sweeps",
+                                                     "max-iterations",
                                                      "repeats",
                                                      "threads",
                                                      "out",
@@ -93,13 +95,17 @@ std::vector<std::string> files_written(const ReplayOptions& options) {
 }
 
 StepRecord columns_of(const ProblemFile& file, const std::string& path, const ReplayOptions& options) {
-  StepRecord row = run_columns(options.solve);
+  StepRecord row = solve_columns(options.solve);
   row.run_id = run_id(values_of(options));
   row.scene = file.scene;
   row.seed = file.seed;
   row.step = file.step;
   row.time_s = file.step * file.problem.h_s;
   row.friction = file.friction_model;
+  row.dt_s = file.problem.h_s;
+  row.cfm = file.cfm;
+  row.erp = file.erp;
+  row.cold = options.cold;
   row.problem_file = path;
   set_problem_columns(file.problem, row);
   return row;

@@ -18,14 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kProblemColumns[] = {"scene",       "seed",          "step",    "friction",
-                                           "bodies",      "contacts",      "rows",    "rows_bilateral",
-                                           "rows_normal", "rows_friction", "islands", "problem_hash"};
+constexpr const char* kProblemColumns[] = {
+    "scene",       "seed",          "step",    "friction",     "bodies", "contacts", "rows", "rows_bilateral",
+    "rows_normal", "rows_friction", "islands", "problem_hash", "dt_s",   "cfm",      "erp"};
 constexpr const char* kPartitionColumns[] = {"parts",          "max_part_bodies",    "cut_pairs",
                                              "interface_rows", "interface_bodies",   "interface_cover_bodies",
                                              "contiguous",     "part_mass_ratio_max"};
 constexpr const char* kResidualColumns[] = {"residual_m_per_s", "residual_bilateral_m_per_s",
-                                            "residual_normal_m_per_s", "residual_friction_m_per_s"};
+                                            "residual_normal_m_per_s", "residual_friction_m_per_s",
+                                            "residual_relative"};
 
 // The file a row speaks of: beside steps.csv, or where it was when it was read.
 fs::path problem_path(const fs::path& directory, const std::string& name) {
@@ -55,7 +56,8 @@ class RowCheck {
 
   void same_residuals(const ResidualReport& verdict) {
     const double found[] = {verdict.residual_m_per_s, verdict.residual_bilateral_m_per_s,
-                            verdict.residual_normal_m_per_s, verdict.residual_friction_m_per_s};
+                            verdict.residual_normal_m_per_s, verdict.residual_friction_m_per_s,
+                            verdict.residual_relative};
     for (std::size_t i = 0; i < std::size(found); ++i) {
       const double stored = table_.number(row_, kResidualColumns[i]);
       note(same_residual(stored, found[i]), kResidualColumns[i], table_.cell(row_, kResidualColumns[i]),
@@ -88,6 +90,9 @@ StepRecord row_of_file(const ProblemFile& file) {
   row.seed = file.seed;
   row.step = file.step;
   row.friction = file.friction_model;
+  row.dt_s = file.problem.h_s;
+  row.cfm = file.cfm;
+  row.erp = file.erp;
   set_problem_columns(file.problem, row);
   return row;
 }
@@ -134,7 +139,7 @@ void check_limits(const StepsTable& table, const std::string& subject, CheckList
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (table.cell(row, "status") != "ok") continue;
     ++ok;
-    const double limit = 1e-9 * std::max(1.0, table.number(row, "largest_free_velocity_m_per_s"));
+    const double limit = kExactLimit * std::max(1.0, table.number(row, "largest_free_velocity_m_per_s"));
     if (wrong.empty() && !(table.number(row, "residual_m_per_s") <= limit))
       wrong = "; line " + std::to_string(row + 2) + " says ok with a residual of " +
               table.cell(row, "residual_m_per_s") + " m/s";

@@ -18,12 +18,14 @@ WRITING = ("record", "write", "motion")  # what else a run puts down
 # Options that make a solver another one, with their defaults.
 SOLVER_OPTIONS = {
     "sweeps": "5",
+    "predictor-sweeps": "40",
+    "max-iterations": "100",
     "strategy": "",
     "kernel": "",
     "reuse-analysis": "False",
     "quickstep-iterations": "20"
 }
-ONLY_OF = {"quickstep-iterations": "ode-quickstep"}  # other solvers ignore it
+ONLY_OF = {"quickstep-iterations": "ode-quickstep", "sweeps": "pgs"}  # other solvers ignore them
 SCALING_FOLDER = "scaling"
 
 

@@ -8,7 +8,7 @@ from cleave_results import counted
 from figures import style
 from figures.claims import HALF
 from figures.verdicts import NOT_REPRODUCED, OPEN, REPRODUCED, RULE, WITHIN_NOISE
-from table_formats import CELL_HELP, GAP
+from table_formats import CELL_HELP, GAP, WAITED, scene_notes
 
 SIGNS = {
     REPRODUCED: ("yes", "✓"),
@@ -46,7 +46,7 @@ def table1(tables):
     remarks = [
         f"{table.title}, {cell.partitioner} {cell.refiner}: {cell.remark}." for table in tables
         for cell in table.cells if cell.remark
-    ]
+    ] + scene_notes(tables)
     return (
         '<div class="wide"><table class="numbers"><thead>'
         f'<tr><td></td>{heads}</tr><tr><td></td>{names}</tr></thead>'
@@ -65,6 +65,7 @@ def _table1_cells(table, combination):
     if cell is None:
         return f'<td class="group">{GAP}</td><td>{GAP}</td><td>{GAP}</td>'
     ours = _pair(cell.ours, 3) + (' <span class="gap">!</span>' if cell.remark else "")
+    ours += WAITED if cell.waited else ""
     return (f'<td class="group{" lowest" if cell.ours_lowest else ""}">{ours}</td>'
             f'<td{" class=lowest" if cell.paper_lowest else ""}>{_pair(cell.paper, 1)}</td>'
             f"<td>{_ratio((cell.ours / cell.paper)[2])}</td>")

@@ -3,6 +3,7 @@
 import numpy
 import pandas
 
+from cleave_results import EXACT_LIMIT
 from figures import style
 from figures.choose import provenance
 from figures.labels import Label, place
@@ -10,7 +11,6 @@ from figures.solver_families import count_text, families, full_name, solver_of
 from figures.solver_groups import MOST_PANELS, groups, of_many_solvers, shared_rows
 from figures.tree import NoData
 
-RESIDUAL_LIMIT = 1e-9  # m/s; the judge accepts up to this, times the largest free velocity above 1 m/s
 FLOOR = 1e-17  # where a residual of exactly 0 is drawn
 CLUSTER_PX = 12  # points as close as that are named together
 
@@ -60,7 +60,7 @@ def draw(data):
         "of a panel have in common, one a solver and combination, lines quartiles. Coloured lines join the "
         "sweeps or iterations of one solver, with their numbers; the names beside a cluster stand fastest "
         "first; the broad grey staircase joins what nothing beats in both. "
-        f"Dashed: {_power(RESIDUAL_LIMIT)} m/s, what exact means. Hollow: not accepted by the "
+        f"Dashed: {_power(EXACT_LIMIT)} m/s, what exact means. Hollow: not accepted by the "
         f"judge in every step. A residual of 0 is drawn at {_power(FLOOR)}. {_left_out(found)}" +
         provenance({name: parts for name, parts, _ in shown}))
 
@@ -107,7 +107,7 @@ def _scatter(ax, table):
                 linewidth=0.9,
                 zorder=1.5)
     ax.step(*front(table), where="post", color=style.GRID, linewidth=3, zorder=1)
-    ax.axhline(RESIDUAL_LIMIT, color=style.INK, linewidth=0.8, linestyle="--", zorder=1)
+    ax.axhline(EXACT_LIMIT, color=style.INK, linewidth=0.8, linestyle="--", zorder=1)
     ax.set(xscale="log", yscale="log", xlabel="$t_s + t_{pr}$ per step, ms", ylabel="residual, m/s")
     ax.margins(0.07)
 
@@ -133,7 +133,7 @@ def name_points(ax, table):
     start, least = front(table)
     lines = [list(zip(start.repeat(2)[1:], least.repeat(2)[:-1]))] if len(start) > 1 else []
     lines += [list(zip(family["time_0.5"], family["residual_0.5"])) for family in joined.values()]
-    lines.append([(limit, RESIDUAL_LIMIT) for limit in ax.get_xlim()])
+    lines.append([(limit, EXACT_LIMIT) for limit in ax.get_xlim()])
     for _, row in table.iterrows():
         lines.append([(row[f"time_{end}"], row["residual_0.5"]) for end in ("0.25", "0.75")])
         lines.append([(row["time_0.5"], row[f"residual_{end}"]) for end in ("0.25", "0.75")])

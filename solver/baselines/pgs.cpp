@@ -9,7 +9,7 @@ namespace {
 
 class Pgs : public StepSolver {
  public:
-  explicit Pgs(const SolveOptions& options) : options_(options) {}
+  explicit Pgs(const SolveOptions& options) : options_(options), clock_(options.threads) {}
   bool uses_partition() const override { return false; }
 
  private:
@@ -31,7 +31,7 @@ class Pgs : public StepSolver {
     slack_.resize(problem.row_count());
     step_.velocity(solution.impulse, solution.velocity);
     step_.slack(solution.velocity, solution.impulse, slack_);
-    if (!(step_.residual(solution.impulse, slack_) <= 1e-9 * step_.velocity_scale())) {
+    if (!(step_.residual(solution.impulse, slack_) <= step_.exact_limit_m_per_s())) {
       summary.status = SolveStatus::not_converged;
       summary.message = "residual above the limit after the last sweep";
     }

@@ -5,7 +5,7 @@
 //   pivoting;
 //   3. interior rows are checked against the new velocities; when all are consistent the result is exact.
 // Nothing makes the rounds converge: on stiff or redundant piles they cycle. The strategy reports that
-// honestly (it returns false after kMostRounds) and is kept as the reference.
+// honestly (it returns false after max_iterations rounds) and is kept as the reference.
 //
 // Both pivoting loops are written on the kernel's one system with the other side's rows held: the parts
 // decouple when no cut row is free, so one pass over the whole matrix is a pass over every part.
@@ -17,7 +17,6 @@
 namespace cleave {
 namespace {
 
-constexpr int kMostRounds = 100;
 constexpr int kMostPivots = 50;    // within one round, per side
 constexpr int kBlockPatience = 3;  // block flips without a new least count, before single ones
 
@@ -27,14 +26,14 @@ class Alternate : public Strategy {
     find_groups(state);
     state.states_from_impulses();
     const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < state.options.max_iterations; ++round) {
       ++state.summary->iterations;
       if (!pivot(state, true, tolerance) || !pivot(state, false, tolerance)) return false;
       // The interface impulses are new: are the interior rows still consistent?
       if (state.find_violations(tolerance) == 0) {
         StageTimer timer(state.tasks.clock(), Stage::refine);
         state.refine_free(0.1 * tolerance, 2, true);
-        return state.residual() <= exact_limit_m_per_s(*state.step);
+        return state.residual() <= state.step->exact_limit_m_per_s();
       }
     }
     return false;

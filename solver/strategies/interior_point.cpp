@@ -17,7 +17,6 @@
 namespace cleave {
 namespace {
 
-constexpr int kMostIterations = 100;
 constexpr double kStepFraction = 0.995;  // of the way to the nearest bound
 constexpr double kShortStep = 0.1;
 // First attempt at the active set, as an error in units of the velocity scale, by least C_r / d_r: stiffer
@@ -96,7 +95,7 @@ bool InteriorPoint::polish(SolveState& state) {
   const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
   kept_impulse_ = state.impulse;
   iterate_.read_active_set(state);
-  if (state.settle(tolerance) && state.residual() <= exact_limit_m_per_s(*state.step)) return true;
+  if (state.settle(tolerance) && state.residual() <= state.step->exact_limit_m_per_s()) return true;
   state.impulse = kept_impulse_;
   state.update_velocity();
   return false;
@@ -115,7 +114,7 @@ InteriorPoint::Progress InteriorPoint::watch(const SolveState& state, double err
   ++since_best_;
   const bool settled = best_error_ < kSettled * state.step->velocity_scale();
   if (settled && last_step_ >= kFullStep && error > kGrowth * best_error_) ++grown_;
-  if (best_error_ <= exact_limit_m_per_s(*state.step) && since_best_ >= kPatience) return Progress::finished;
+  if (best_error_ <= state.step->exact_limit_m_per_s() && since_best_ >= kPatience) return Progress::finished;
   return grown_ >= kPatience ? Progress::rounding : Progress::good;
 }
 
@@ -139,7 +138,7 @@ void InteriorPoint::begin(SolveState& state) {
 bool InteriorPoint::run(SolveState& state) {
   begin(state);
   const double target = state.options.target_m_per_s * state.step->velocity_scale();
-  for (int k = 0; k < kMostIterations; ++k) {
+  for (int k = 0; k < state.options.max_iterations; ++k) {
     double error = iterate_.error(state);
     const Progress progress = watch(state, error);
     if (progress == Progress::finished) break;
@@ -162,7 +161,7 @@ bool InteriorPoint::run(SolveState& state) {
     }
   }
   iterate_.restore(state);
-  return state.residual() <= exact_limit_m_per_s(*state.step);
+  return state.residual() <= state.step->exact_limit_m_per_s();
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ namespace cleave {
 namespace {
 
 constexpr double kLeastCompliance = 1e-15;  // of d_r
+constexpr int kPredictorSweeps = 5;
 
 class Newton : public Strategy {
  public:
@@ -29,7 +30,7 @@ class Newton : public Strategy {
     if (state.step->least_relative_compliance() < kLeastCompliance) return false;  // lambda(v) divides by it
     {
       StageTimer timer(state.tasks.clock(), Stage::predict);
-      gauss_seidel_sweeps(*state.step, state.options.sweeps, state.impulse, state.velocity);
+      gauss_seidel_sweeps(*state.step, kPredictorSweeps, state.impulse, state.velocity);
     }
     const std::size_t m = state.impulse.size();
     row_velocity_.resize(m);
@@ -67,7 +68,7 @@ class Newton : public Strategy {
     if (state.state == last_state_) {
       if (!state.factor_free()) return false;
       state.refine_free(0.1 * tolerance, 8, true);
-      if (state.find_violations(tolerance) == 0) return state.residual() <= exact_limit_m_per_s(*state.step);
+      if (state.find_violations(tolerance) == 0) return state.residual() <= state.step->exact_limit_m_per_s();
     }
     last_state_ = state.state;
     return false;

@@ -16,19 +16,19 @@
 namespace cleave {
 namespace {
 
-// A sweep costs about a fifth of a factorisation; on settled piles of 200 boxes (cfm 1e-5, cold) 20 sweeps
-// leave 6.6 factorisations on average where 5 leave 11, and 40 leave 5.6 in the same time.
-constexpr int kPredictorSweeps = 40;
 constexpr int kRestartSweeps = 15;
 // An iteration makes progress when it leaves less than this share of the least number of violations so far.
 constexpr double kProgress = 0.75;
 constexpr int kRestarts = 2;     // without a new least count of violations, before single flips
 constexpr int kSingleFlips = 1;  // without progress, before giving up
 
+// Sweeps to start from (options.predictor_sweeps): one costs about a fifth of a factorisation; on settled
+// piles of 200 boxes (cfm 1e-5, cold) 20 leave 6.6 factorisations on average where 5 leave 11, and 40
+// leave 5.6 in the same time.
 class Pivot : public Strategy {
  public:
   bool run(SolveState& state) override {
-    sweep(state, kPredictorSweeps);
+    sweep(state, state.options.predictor_sweeps);
     int least = std::numeric_limits<int>::max(), stalled = 0;
     const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
     for (int k = 0; k < state.options.max_iterations; ++k) {
@@ -67,7 +67,7 @@ class Pivot : public Strategy {
   static bool finish(SolveState& state, double tolerance) {
     StageTimer timer(state.tasks.clock(), Stage::refine);
     state.refine_free(0.1 * tolerance, 2, true);
-    return state.residual() <= exact_limit_m_per_s(*state.step);
+    return state.residual() <= state.step->exact_limit_m_per_s();
   }
 };
 

@@ -23,7 +23,4 @@ std::unique_ptr<Strategy> make_newton();
 std::unique_ptr<Strategy> make_interior_point();
 std::unique_ptr<Strategy> make_alternate();
 
-// The limit of an exact answer (step_problem.h): 1e-9 * max(1, largest |v0| entry), m/s.
-inline double exact_limit_m_per_s(const PreparedStep& step) { return 1e-9 * step.velocity_scale(); }
-
 }  // namespace cleave

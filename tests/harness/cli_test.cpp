@@ -1,12 +1,16 @@
 // The command line as a user meets it: what is refused, in which words, and that nothing is left behind.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <map>
+#include <set>
 
 #include "harness/friction.h"
 #include "harness/nearest_name.h"
 #include "harness/options.h"
 #include "harness/solver_choices.h"
+#include "harness/step_record.h"
 #include "partition/registry.h"
 #include "scenarios/scene.h"
 #include "solver/registry.h"
@@ -47,6 +51,7 @@ const std::vector<BadInput> kBadInputs = {
     {{"--threads", "0"}, {"--threads", "0", "[1, 1024]"}},
     {{"--steps", "-1"}, {"--steps", "-1", "[0, inf)"}},
     {{"--measure-every", "0"}, {"--measure-every", "0", "[1, inf)"}},
+    {{"--steps", "40", "--measure-every", "50"}, {"--measure-every: 50", "--steps 40", "1 to 40"}},
     {{"--repeats", "0"}, {"--repeats", "0", "[1, inf)"}},
     {{"--skip", "-1"}, {"--skip", "-1", "[0, inf)"}},
     {{"--sweeps", "-1"}, {"--sweeps", "-1", "[0, inf)"}},
@@ -235,6 +240,112 @@ TEST(Options, EveryGivenValueArrives) {
   EXPECT_EQ(refine.max_growth, 0.5);
   EXPECT_EQ(refine.edge_weight, EdgeWeight::pairs);
   EXPECT_TRUE(refine.as_printed);
+}
+
+// Two rows that differ in a cell differ in a column that says why.
+TEST(Options, EveryOptionThatCanChangeACellHasAColumn) {
+  const std::map<std::string, std::string> renamed = {
+      {"dt", "dt_s"}, {"gravity", "gravity_m_per_s2"}, {"repeats", "repeat_count"}};
+  // Which rows there are, where they go, and what --stiffness and --damping make of cfm and erp.
+  const std::set<std::string> not_in_a_cell = {"measure-every", "skip",      "out",    "force",
+                                               "record-motion", "stiffness", "damping"};
+  std::set<std::string> names;
+  for (const Column& column : columns()) names.insert(column.name);
+  for (const OptionSpec& spec : run_option_specs()) {
+    std::string column = spec.name;
+    std::ranges::replace(column, '-', '_');
+    if (renamed.contains(spec.name)) column = renamed.at(spec.name);
+    EXPECT_NE(names.contains(column), not_in_a_cell.contains(spec.name)) << spec.name;
+  }
+}
+
+TEST(Options, GivenValuesStandInTheRows) {
+  const TemporaryDirectory directory;
+  const ProgramResult result = run_cleave({"run",
+                                           "--scene",
+                                           "rock_pile",
+                                           "--bodies",
+                                           "2",
+                                           "--rock-shape",
+                                           "sphere",
+                                           "--steps",
+                                           "2",
+                                           "--solver",
+                                           "schur",
+                                           "--partitioner",
+                                           "mix",
+                                           "--refiner",
+                                           "fm",
+                                           "--dt",
+                                           "0.25",
+                                           "--mu",
+                                           "0.75",
+                                           "--cfm",
+                                           "0.125",
+                                           "--erp",
+                                           "0.5",
+                                           "--gravity",
+                                           "1.5",
+                                           "--friction",
+                                           "constant",
+                                           "--friction-force-n",
+                                           "2.5",
+                                           "--match-tolerance",
+                                           "0.0625",
+                                           "--contact-cap",
+                                           "3",
+                                           "--edge-weight",
+                                           "pairs",
+                                           "--degree",
+                                           "constraints",
+                                           "--degree-scope",
+                                           "whole",
+                                           "--as-printed",
+                                           "--skip-small-islands",
+                                           "--sweeps",
+                                           "7",
+                                           "--predictor-sweeps",
+                                           "9",
+                                           "--max-iterations",
+                                           "50",
+                                           "--reuse-analysis",
+                                           "--quickstep-iterations",
+                                           "11",
+                                           "--ode-step-max-rows",
+                                           "13",
+                                           "--advance",
+                                           "monolithic",
+                                           "--out",
+                                           directory / "out"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const CsvTable table = read_csv(directory / "out/steps.csv");
+  const std::map<std::string, std::string> expected = {
+      {"dt_s", "0.25"},
+      {"mu", "0.75"},
+      {"cfm", "0.125"},
+      {"erp", "0.5"},
+      {"gravity_m_per_s2", "1.5"},
+      {"friction_force_n", "2.5"},
+      {"match_tolerance", "0.0625"},
+      {"contact_cap", "3"},
+      {"edge_weight", "pairs"},
+      {"degree", "constraints"},
+      {"degree_scope", "whole"},
+      {"as_printed", "1"},
+      {"skip_small_islands", "1"},
+      {"sweeps", "7"},
+      {"predictor_sweeps", "9"},
+      {"max_iterations", "50"},
+      {"reuse_analysis", "1"},
+      {"cold", "0"},
+      {"quickstep_iterations", "11"},
+      {"ode_step_max_rows", "13"},
+      {"mode", "lockstep"},
+      {"advance", "monolithic"},
+      {"steps", "2"},
+      {"scene_options", "bodies=2;mass=100;rock-shape=sphere"},
+      {"schema_version", kStepsSchema}};
+  for (const auto& [column, value] : expected) EXPECT_EQ(table.at(0, column), value) << column;
 }
 
 TEST(Options, FrictionWordsFollowTheEnumeration) {

@@ -62,11 +62,37 @@ TEST(Csv, HeaderRowAndColumnListAgree) {
 TEST(Csv, FreshRecordHoldsNoZeroButTheSeed) {
   const CsvTable table = parse_csv(csv_header() + csv_line(StepRecord{}));
   for (const std::string& name : table.header) {
-    if (name == "seed") continue;
+    if (name == "seed" || name == "schema_version") continue;
     const std::string& cell = table.at(0, name);
     const bool unmeasured = cell == "nan" || cell == "-1" || cell == "-" || cell == "skipped";
     EXPECT_TRUE(unmeasured) << name << " is " << cell;
   }
+}
+
+// What the documents say may differ between two runs of the same experiment, and nothing else.
+TEST(Csv, TheMachinesColumnsAreTimesThreadsAndMemory) {
+  for (const Column& column : columns())
+    EXPECT_EQ(column.machine,
+              column.name.starts_with("t_") || column.name == "threads" || column.name == "peak_memory_mb")
+        << column.name;
+}
+
+TEST(Csv, ASolveWithoutResultMeasuredNothing) {
+  SolveSummary summary;
+  summary.message = "why";
+  summary.times.total_ms = 3;  // until it crashed
+  const std::string fresh = csv_line(StepRecord{});
+  for (const SolveStatus status : {SolveStatus::refused, SolveStatus::crashed, SolveStatus::out_of_memory}) {
+    summary.status = status;
+    StepRecord record;
+    record.set_summary(summary);
+    EXPECT_EQ(csv_line(record), fresh) << to_string(status);
+  }
+  summary.status = SolveStatus::not_converged;
+  StepRecord record;
+  record.set_summary(summary);
+  EXPECT_EQ(record.t_s_ms, 3);
+  EXPECT_EQ(record.factorizations, 0);
 }
 
 TEST(Csv, NumbersReadBackUnchanged) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <limits>
 
@@ -55,6 +56,7 @@ TEST(JsonWriter, ForeignParserReadsBackWhatWasWritten) {
 class ManifestOfARun : public ::testing::Test {
  protected:
   void SetUp() override {
+    ::setenv("OMP_WAIT_POLICY", "passive", 1);
     const ProgramResult result =
         run_cleave({"run", "--scene", "rock_pile", "--bodies", "3", "--steps", "6", "--measure-every", "3",
                     "--solver", "monolithic", "--advance", "monolithic", "--seed", "18446744073709551615",
@@ -82,6 +84,16 @@ TEST_F(ManifestOfARun, SaysWhatRanAndHowItEnded) {
             "True");
 }
 
+TEST_F(ManifestOfARun, SaysWhatTheTimesDependOn) {
+  EXPECT_EQ(ask_manifest("len(m['machine']['load_average_end']), m['machine']['governor'] != ''"),
+            "(3, True)");
+  EXPECT_EQ(ask_manifest("m['machine']['omp_environment'].get('OMP_WAIT_POLICY')"), "passive");
+  EXPECT_EQ(ask_manifest("len(m['machine']['dense_kernel']) > 2 and m['machine']['dense_gflop_per_s'] > 0"),
+            "True");
+  EXPECT_EQ(ask_manifest("m['result']['t_s_total_ms'] > 0 and m['result']['t_s_waiting_total_ms'] >= 0"),
+            "True");
+}
+
 TEST_F(ManifestOfARun, HoldsEveryOptionWithItsValue) {
   std::vector<std::string> names;
   for (const OptionSpec& spec : run_option_specs()) names.push_back(spec.name);
@@ -97,6 +109,8 @@ TEST_F(ManifestOfARun, DescribesTheColumnsOfStepsCsv) {
   const CsvTable table = read_csv(directory_ / "run/steps.csv");
   EXPECT_EQ(ask_manifest("','.join(c['name'] for c in m['columns'])"), joined(table.header, ","));
   EXPECT_EQ(ask_manifest("m['run_id']"), table.at(0, "run_id"));
+  EXPECT_EQ(ask_manifest("[c['name'] for c in m['columns'] if c['machine'] and c['name'][:2] != 't_']"),
+            "['threads', 'peak_memory_mb']");
 }
 
 TEST_F(ManifestOfARun, LeavesNoTemporaryFile) {

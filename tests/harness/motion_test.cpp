@@ -19,6 +19,7 @@
 #include "harness/hdf5_writer.h"
 #include "harness/simulation.h"
 #include "solver/residual.h"
+#include "tests/harness/machine_columns.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -232,7 +233,7 @@ TEST(Motion, ChangesNothingElse) {
     const CsvTable table = read_csv(directory / name / "steps.csv");
     std::map<std::string, std::vector<std::string>> columns;
     for (const std::string& column : table.header)
-      if (!column.starts_with("t_")) columns[column] = table.column(column);
+      if (!is_of_the_machine(column)) columns[column] = table.column(column);
     return columns;
   };
   EXPECT_EQ(cells("with", {"--record-motion"}), cells("without", {}));

@@ -396,7 +396,12 @@ TEST(OdeBaselines, ARefusedWorldLeavesRowsWithTheReason) {
   ASSERT_EQ(table.rows.size(), 4u);
   EXPECT_EQ(table.at(0, "status"), "refused");
   EXPECT_EQ(table.at(0, "status_reason"), "36 rows, more than --ode-step-max-rows 35");
-  EXPECT_EQ(table.at(0, "residual_m_per_s"), "nan");
+  for (const char* column : {"residual_m_per_s", "t_s_ms", "t_s_min_ms", "t_s_max_ms", "t_s_cpu_ms",
+                             "t_s_waiting_ms", "t_s_other_ms", "factor_mflop_local"})
+    EXPECT_EQ(table.at(0, column), "nan") << column;
+  for (const char* column : {"iterations", "factorizations", "fallbacks", "refinements"})
+    EXPECT_EQ(table.at(0, column), "-1") << column;
+  EXPECT_EQ(table.at(0, "solution_hash"), "-");
   EXPECT_EQ(table.at(1, "status"), "skipped");
   EXPECT_NE(table.at(1, "status_reason").find("stopped at step 0: refused, 36 rows"), std::string::npos);
 }

@@ -12,6 +12,7 @@
 #include "harness/nearest_name.h"
 #include "harness/problem_file.h"
 #include "solver/residual.h"
+#include "tests/harness/machine_columns.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -78,6 +79,46 @@ TEST(Record, PhysicsOptionsReachTheFile) {
   ASSERT_GT(file.problem.row_count(), 0);
   for (const double compliance : file.problem.compliance) EXPECT_DOUBLE_EQ(compliance, 0.25);
   for (const RowKind kind : file.problem.row_kind) EXPECT_EQ(kind, RowKind::normal);
+}
+
+// Only --advance runs: what it does not use is refused, what it uses is taken.
+TEST(Record, RefusesOptionsThatItsSolverDoesNotUse) {
+  struct Case {
+    std::string option, value, used_by, not_used_by;
+  };
+  const std::vector<Case> cases = {{"--partitioner", "mix", "schur", "exact"},
+                                   {"--refiner", "fm", "schur", "monolithic"},
+                                   {"--max-bodies", "5", "pivot:schur-bodies", "exact"},
+                                   {"--tau-mr", "4", "schur", "exact"},
+                                   {"--tau-mix", "0.3", "schur", "exact"},
+                                   {"--max-growth", "0.1", "schur", "pgs"},
+                                   {"--edge-weight", "pairs", "schur", "exact"},
+                                   {"--degree", "constraints", "schur", "exact"},
+                                   {"--degree-scope", "whole", "schur", "exact"},
+                                   {"--as-printed", "", "schur", "exact"},
+                                   {"--skip-small-islands", "", "schur", "exact"},
+                                   {"--max-iterations", "90", "exact", "pgs"},
+                                   {"--reuse-analysis", "", "exact", "ode-quickstep"},
+                                   {"--predictor-sweeps", "20", "exact", "interior-point:monolithic"},
+                                   {"--sweeps", "300", "pgs", "exact"},
+                                   {"--quickstep-iterations", "30", "ode-quickstep", "ode-step"},
+                                   {"--ode-step-max-rows", "400", "ode-step", "ode-quickstep"}};
+  for (const auto& [option, value, used_by, not_used_by] : cases) {
+    SCOPED_TRACE(option);
+    const TemporaryDirectory directory;
+    Arguments record = {"record", "--scene", "rock_pile", "--bodies", "2", "--at", "1", option};
+    if (!value.empty()) record.push_back(value);
+    const auto result = [&](const std::string& advance) {
+      return run_cleave(record + Arguments{"--advance", advance, "--out", directory / advance});
+    };
+    EXPECT_EQ(result(used_by).exit_code, 0) << result(used_by).err;
+    const ProgramResult refused = result(not_used_by);
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_TRUE(refused.err.starts_with("cleave record: " + option + ": --advance " + not_used_by))
+        << refused.err;
+    EXPECT_EQ(count_lines(refused.err), 1);
+    EXPECT_FALSE(fs::exists(directory / not_used_by));
+  }
 }
 
 TEST(Record, SameBytesAgainOnAnyNumberOfThreads) {
@@ -190,15 +231,18 @@ TemporaryDirectory* ReplayOfARun::directory_ = nullptr;
 
 // A file holds the problem and not the world it came from.
 const std::set<std::string> kOfTheWorld = {
-    "run_id",     "contact_cap_hits",        "ode_messages", "max_penetration_m", "potential_energy_j",
-    "state_hash", "velocity_spread_m_per_s", "problem_file", "joint_drift_m",     "last_body_z_m"};
+    "run_id", "contact_cap_hits", "ode_messages", "max_penetration_m", "potential_energy_j", "state_hash",
+    "velocity_spread_m_per_s", "problem_file", "joint_drift_m", "last_body_z_m",
+    // Options that made the world.
+    "mu", "gravity_m_per_s2", "match_tolerance", "contact_cap", "quickstep_iterations", "ode_step_max_rows",
+    "mode", "advance", "steps", "scene_options"};
 
 TEST_F(ReplayOfARun, RowsAreThoseOfTheRun) {
   const CsvTable run = table("run"), replayed = table("replayed");
   ASSERT_EQ(run.rows.size(), 15u);
   ASSERT_EQ(replayed.rows.size(), 15u);
   for (const std::string& column : run.header) {
-    if (column.starts_with("t_") || kOfTheWorld.contains(column)) continue;
+    if (is_of_the_machine(column) || kOfTheWorld.contains(column)) continue;
     EXPECT_EQ(run.column(column), replayed.column(column)) << column;
   }
 }
@@ -321,7 +365,8 @@ TEST_F(ReplayOfARun, MistakesAreNamedBeforeAnythingIsCreated) {
       {Arguments{"record", "--at", "5,-1", "--out", out} + kPile, "--at: -1 is not in [0, "},
       {Arguments{"record", "--at", "1.5", "--out", out} + kPile, "--at: '1.5' is not a whole number"},
       {Arguments{"record", "--at", "5", "--steps", "9", "--out", out} + kPile, "--steps: no such option"},
-      {Arguments{"record", "--at", "5", "--partitioner", "mix,bfs", "--out", out} + kPile,
+      {Arguments{"record", "--at", "5", "--advance", "schur", "--partitioner", "mix,bfs", "--out", out} +
+           kPile,
        "--partitioner: 'mix,bfs'"},
       {Arguments{"record", "--at", "5", "--out", *directory_ / "recorded"} + kPile, "already holds"},
   };

@@ -10,8 +10,10 @@
 #include <thread>
 
 #include "harness/nearest_name.h"
+#include "harness/run_summary.h"
 #include "harness/splitter.h"
 #include "partition/registry.h"
+#include "tests/harness/machine_columns.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -41,11 +43,11 @@ Finished run(const Arguments& arguments) {
   return run;
 }
 
-// All cells but times and the thread count.
+// All cells but those of the machine.
 std::vector<std::vector<std::string>> repeatable_cells(const CsvTable& table) {
   std::vector<std::vector<std::string>> rows(table.rows.size());
   for (std::size_t c = 0; c < table.header.size(); ++c) {
-    if (table.header[c].starts_with("t_") || table.header[c] == "threads") continue;
+    if (is_of_the_machine(table.header[c])) continue;
     for (std::size_t r = 0; r < rows.size(); ++r) rows[r].push_back(table.rows[r][c]);
   }
   return rows;
@@ -201,6 +203,63 @@ TEST(Run, InexactRowsAreNamedAndCounted) {
   EXPECT_EQ(pile.table.at(1, "status"), "not_converged");
   EXPECT_GT(number(pile.table.at(1, "residual_m_per_s")), 1e-9);
   EXPECT_NE(pile.result.err.find("pgs: not_converged"), std::string::npos) << pile.result.err;
+}
+
+// 1.15 GB of matrix where 0.8 are allowed; the sanitizers themselves want more than that.
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST(Run, ASolveWithoutMemoryIsARowThatMeasuredNothing) {
+  const TemporaryDirectory directory;
+  const std::string out = directory / "out";
+  const std::string command = std::string("ulimit -v 800000; OPENBLAS_NUM_THREADS=1 exec ") + CLEAVE_PROGRAM +
+                              " run --scene rock_pile --bodies 2000 --steps 1 --solver dense" +
+                              " --advance monolithic --out " + out;
+  const ProgramResult result = run_program("/bin/bash", {"-c", command});
+  EXPECT_EQ(result.exit_code, 2) << result.err;
+  const CsvTable table = read_csv(directory / "out/steps.csv");
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(table.at(0, "status"), "out_of_memory");
+  EXPECT_NE(table.at(0, "status_reason"), "-");
+  for (const char* column : {"t_s_ms", "t_s_min_ms", "t_s_max_ms", "t_s_cpu_ms", "t_s_other_ms",
+                             "residual_m_per_s", "residual_relative", "kinetic_energy_j"})
+    EXPECT_EQ(table.at(0, column), "nan") << column;
+  EXPECT_EQ(table.at(0, "factorizations"), "-1");
+  EXPECT_EQ(table.at(0, "solution_hash"), "-");
+}
+#endif
+
+TEST(Run, TimesOfTheRepeatsStandInOrder) {
+  const Finished pile = run(kTinyPile + Arguments{"--repeats", "4", "--steps", "60", "--measure-every", "30",
+                                                  "--solver", "schur,pgs,ode-quickstep"});
+  ASSERT_GE(pile.table.rows.size(), 6u);
+  for (std::size_t r = 0; r < pile.table.rows.size(); ++r) {
+    const double t_s_ms = number(pile.table.at(r, "t_s_ms"));
+    EXPECT_LE(number(pile.table.at(r, "t_s_min_ms")), t_s_ms);
+    EXPECT_GE(number(pile.table.at(r, "t_s_max_ms")), t_s_ms);
+    EXPECT_GT(number(pile.table.at(r, "t_s_cpu_ms")), 0);
+    const std::string& waiting = pile.table.at(r, "t_s_waiting_ms");  // nan on a kernel without schedstat
+    EXPECT_TRUE(waiting == "nan" || number(waiting) >= 0) << waiting;
+    EXPECT_GT(number(pile.table.at(r, "peak_memory_mb")), 1);
+  }
+}
+
+TEST(RunSummary, SaysWhenSolvesWaitedForACore) {
+  StepRecord row;
+  row.status = "ok";
+  row.t_s_ms = 50;
+  RunSummary summary;
+  for (const double waiting_ms : {5.0, 0.0}) {  // 5 of 100 ms: not yet more than a twentieth
+    row.t_s_waiting_ms = waiting_ms;
+    summary.add(row);
+  }
+  EXPECT_EQ(summary.text().find("waited"), std::string::npos) << summary.text();
+  row.t_s_waiting_ms = kUnmeasured;  // a row that does not know says nothing
+  summary.add(row);
+  EXPECT_EQ(summary.text().find("waited"), std::string::npos) << summary.text();
+  row.t_s_waiting_ms = 25;
+  summary.add(row);
+  EXPECT_NE(summary.text().find("the solves waited 20 % of their time for a core (30 of 150 ms)"),
+            std::string::npos)
+      << summary.text();
 }
 
 // A world that cannot go on: the steps that are left are rows, and the run says so.

@@ -7,6 +7,7 @@
 
 #include "harness/nearest_name.h"
 #include "solver/registry.h"
+#include "tests/harness/machine_columns.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -54,7 +55,7 @@ void expect_equal_but_for_times(const CsvTable& one, const CsvTable& two) {
   ASSERT_EQ(one.rows.size(), two.rows.size());
   int compared = 0;
   for (const std::string& column : one.header) {
-    if (column.starts_with("t_") || column == "threads") continue;
+    if (is_of_the_machine(column)) continue;
     EXPECT_EQ(one.column(column), two.column(column)) << column;
     ++compared;
   }

@@ -5,6 +5,8 @@ import unittest
 
 from synthetic import ROOT, SCRIPTS, good_row, run_script
 
+from cleave_results import EXACT_LIMIT
+
 # Where each package is looked for or used, and under which of these names. Any other python3-* package has to
 # be imported by a script.
 USED_BY = {
@@ -37,7 +39,7 @@ def packages():
 def step_record_columns():
     """Columns of steps.csv as harness/step_record.h lists them, with one t_s_* a stage and worker count."""
     text = (ROOT / "harness" / "step_record.h").read_text()
-    columns = re.findall(r'visit\("(\w+)",', text)
+    columns = re.findall(r'visit(?:_machine)?\(\s*"(\w+)",', text)
     clock = (ROOT / "solver" / "stage_clock.h").read_text()
     stages = re.findall(r'"(\w+)"', re.search(r"kStageNames = \{(.*?)\}", clock, re.S).group(1))
     workers = re.search(r"kModelWorkers = \{(.*?)\}", clock).group(1).replace(" ", "").split(",")
@@ -100,6 +102,20 @@ class ColumnsTest(unittest.TestCase):
         ]
         self.assertEqual(sorted(name for row in rows for name in re.findall(r"`(\w+)`", row)),
                          sorted(step_record_columns()))
+
+    def test_results_readme_names_the_columns_of_the_machine(self):
+        record = (ROOT / "harness" / "step_record.h").read_text()
+        marked = set(re.findall(r'visit_machine\(\s*"(\w+)', record))
+        text = (ROOT / "results" / "README.md").read_text()
+        sentence = re.search(r"are the machine's: (.*?)\.\n", text, re.S).group(1)
+        self.assertEqual({name for name in marked if not name.startswith("t_")},
+                         set(re.findall(r"`(\w+)`", sentence)) - {"t_"})
+        self.assertIn("`t_...`", sentence)
+        self.assertTrue({"t_collide_ms", "t_s_", "t_s_model_p", "t_s_waiting_ms"} <= marked)
+
+    def test_the_judges_limit_is_one_number(self):
+        text = (ROOT / "solver" / "step_problem.h").read_text()
+        self.assertEqual(float(re.search(r"kExactLimit = (\S+);", text).group(1)), EXACT_LIMIT)
 
     def test_the_made_up_rows_have_real_columns(self):
         self.assertLessEqual(set(good_row("rock_pile", 0, "mix", "fm")), step_record_columns())

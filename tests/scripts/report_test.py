@@ -203,7 +203,7 @@ class NewcomersTest(TreeTest):
         write_run(self.directory / "a", rows_of("rock_pile"))
         write_run(self.directory / "b", rows_of("rock_pile", ("mix",), t_s_ms=1e6), cfm=1e-3)
         write_run(self.directory / "c", rows_of("rock_pile", ("mix",), t_s_ms=1e6))
-        write_run(self.directory / "d", rows_of("rock_pile", t_s_ms=1e6), sweeps=500)
+        write_run(self.directory / "d", rows_of("rock_pile", t_s_ms=1e6), **{"predictor-sweeps": 500})
         loaded = data.load(self.directory, "schur")
         self.assertEqual([part.experiment.name for part in loaded.main["rock_pile"]], ["a"])
         self.assertIn("of another setup or with fewer combinations: b, c, d", " ".join(loaded.messages))

@@ -150,6 +150,59 @@ class ChoiceTest(Table1Test):
         self.assertEqual((cell["t_s_ms"], cell["steps_ok"]), ("1.5", "2"))
 
 
+class ComparisonTest(Table1Test):
+
+    def test_runs_of_the_papers_size_need_no_word(self):
+        write_matrix(self.directory)
+        for format in ("text", "markdown", "latex", "csv"):
+            self.assertNotIn("not the paper's run", self.table("--format", format))
+
+    def test_another_size_or_number_of_steps_is_said_below_the_scene(self):
+        for scene, changes, words in (("rock_pile", {"bodies": 50}, "50 bodies (paper 200)"),
+                                      ("log_tower", {"steps": 60}, "60 steps (paper 500)")):
+            write_steps(self.directory / scene, [row | changes for row in matrix(scene, [0])])
+            title = scene.replace("_", " ").title()
+            for format in ("text", "markdown", "csv"):
+                self.assertIn(f"{title} is not the paper's run: {words}", self.table("--format", format))
+            self.assertIn(words, self.table("--format", "latex"))
+        text = self.table()
+        self.assertLess(text.index("Log Tower is not"), text.index("\nRock Pile: "))
+
+    def test_files_that_do_not_say_how_many_steps_are_not_taken_for_the_papers(self):
+        rows = matrix("rock_pile", [0])
+        for row in rows:
+            del row["steps"]
+        write_steps(self.directory, rows)
+        self.assertIn("unknown steps (paper 500)", self.table())
+
+    def test_a_scene_that_the_paper_does_not_have_is_not_compared(self):
+        rows = matrix("rock_pile", [0])
+        write_steps(self.directory, [row | {"scene": "ladder", "steps": 3} for row in rows])
+        self.assertNotIn("not the paper's run", self.table())
+
+    def test_rows_of_other_parameters_are_not_averaged(self):
+        for column, one, other in (("cfm", "1e-05", "1e-06"), ("contact_cap", 8, 4), ("max_iterations", 9, 100)):
+            rows = [row | {column: one} for row in matrix("rock_pile", [0])]
+            rows += [row | {column: other} for row in matrix("rock_pile", [50])]
+            write_steps(self.directory, rows)
+            self.assertIn(f"mix {column} ", self.table(code=1))
+
+    def test_cells_whose_solves_waited_for_a_core_are_marked(self):
+        rows = matrix("rock_pile", [0, 50])
+        rows[0].update(t_s_waiting_ms=1.5)  # mindp none: 1.51 of 20 ms
+        rows[1].update(t_s_waiting_ms="nan")  # mindp kl, where the other step knows 0.01 of 11 ms
+        rows[2].update(t_s_waiting_ms=1.1)  # mindp fm: 1.11 of 24 ms are still few
+        write_steps(self.directory, rows)
+        text = self.table()
+        self.assertEqual([line.split("|")[0].split() for line in text.splitlines() if line.endswith("|‡")],
+                         [["mindp", "none"]])
+        self.assertIn("‡ The solves waited more than 5 % of t_s for a core", text)
+        self.assertIn("Rock Pile mindp none 8 %", " ".join(text.split()))
+        self.assertIn("10.00 + 0.125‡", self.table("--format", "markdown"))
+        self.assertEqual(self.table("--format", "latex").count("$^\\ddagger$"), 2)  # the cell and the caption
+        self.assertEqual(self.cells()["rock_pile", "mindp", "none"]["waiting_share"], "0.0755")
+
+
 class MessageTest(Table1Test):
 
     def test_bad_input_is_one_line(self):

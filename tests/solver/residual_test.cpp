@@ -207,6 +207,59 @@ TEST(ResidualTest, LimitGrowsWithTheFreeVelocity) {
   EXPECT_EQ(report.velocity, problem.free_velocity);
 }
 
+TEST(ResidualTest, RelativeResidualIsInTheProblemsOwnVelocities) {
+  int compared = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    SeededRandom random(seed);
+    const StepProblem problem = make_small_problem(seed);
+    const DenseJudge twin(problem);
+    const ResidualReport report = judge(problem, random_impulse(random, problem.row_count()));
+    const Eigen::VectorXd before = twin.jacobian * twin.free_velocity;
+    const double scale = std::max({twin.free_velocity.lpNorm<Eigen::Infinity>(),
+                                   before.lpNorm<Eigen::Infinity>(), twin.rhs.lpNorm<Eigen::Infinity>()});
+    if (scale == 0) continue;  // all at rest, see below
+    ++compared;
+    EXPECT_NEAR(report.residual_relative, report.residual_m_per_s / scale, 1e-12 * report.residual_relative)
+        << "seed " << seed;
+  }
+  EXPECT_GT(compared, kSeeds / 2);
+}
+
+// The limit is in metres per second: where everything is a million times slower, it accepts an error that the
+// relative residual shows.
+TEST(ResidualTest, RelativeResidualSeesSmallVelocities) {
+  StepProblem problem;
+  problem.h_s = kTestStep_s;
+  append_body(problem, 2, {1, 1, 1}, {0, 0, -1e-6, 0, 0, 0});
+  RowSpec floor;
+  floor.jacobian_a = {0, 0, 1, 0, 0, 0};
+  floor.lower = 0;
+  append_row(problem, floor);
+  const ResidualReport report = judge(problem, std::vector<double>{2e-6 * (1 - 2e-4)});
+  EXPECT_TRUE(report.exact);
+  EXPECT_NEAR(report.residual_m_per_s, 2e-10, 1e-20);
+  EXPECT_NEAR(report.residual_relative, 2e-4, 1e-14);
+
+  problem.free_velocity[2] = -1;  // the same in metres per second
+  const ResidualReport usual = judge(problem, std::vector<double>{2 * (1 - 2e-4)});
+  EXPECT_FALSE(usual.exact);
+  EXPECT_NEAR(usual.residual_relative, 2e-4, 1e-14);
+}
+
+TEST(ResidualTest, RelativeResidualOfNothingIsZero) {
+  StepProblem problem;
+  problem.h_s = kTestStep_s;
+  append_body(problem, 1, {1, 1, 1}, {0, 0, 0, 0, 0, 0});
+  EXPECT_EQ(judge(problem, {}).residual_relative, 0);
+  RowSpec floor;
+  floor.jacobian_a = {0, 0, 1, 0, 0, 0};
+  floor.lower = 0;
+  append_row(problem, floor);
+  EXPECT_EQ(judge(problem, std::vector<double>{0.0}).residual_relative, 0);
+  EXPECT_EQ(judge(problem, std::vector<double>{1.0}).residual_relative, kInfinity);
+  EXPECT_TRUE(std::isnan(judge(problem, std::vector<double>{kNan}).residual_relative));
+}
+
 TEST(ResidualTest, IgnoresTheUnusedBlockOfAStaticRow) {
   StepProblem problem = make_small_problem(3);
   while (std::count(problem.row_body.begin(), problem.row_body.end(), -1) == 0) {

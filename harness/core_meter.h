@@ -1,0 +1,24 @@
+// What the threads of this process get of the cores while something runs: read before and after, never inside
+// what is timed.
+#pragma once
+
+namespace cleave {
+
+struct CoreTimes {
+  double cpu_ms;      // of all threads
+  double waiting_ms;  // ready to run, but no core was free; NaN where the kernel keeps no schedstat
+};
+
+class CoreMeter {
+ public:
+  CoreMeter();             // begins
+  CoreTimes stop() const;  // since then
+
+ private:
+  double waiting_ms_, cpu_ms_;
+};
+
+// Largest resident set of the process so far, 1e6 bytes; NaN where the system does not say.
+double peak_memory_mb();
+
+}  // namespace cleave

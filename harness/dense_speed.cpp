@@ -1,0 +1,47 @@
+#include "harness/dense_speed.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "harness/stopwatch.h"
+#include "solver/linear/dense_cholesky.h"
+#include "solver/linear/dense_panel.h"
+
+namespace cleave {
+namespace {
+
+constexpr int kRows = 512;
+constexpr int kTries = 3;
+
+// Far from singular.
+void fill(DenseCholesky& cholesky) {
+  cholesky.resize(kRows);
+  for (int p = 0; p < cholesky.panel_count(); ++p) {
+    double* entries = cholesky.begin_panel(p);
+    for (int row = kPanelRows * p; row < std::min(kRows, kPanelRows * (p + 1)); ++row)
+      for (int column = 0; column <= row; ++column)
+        entries[(row - kPanelRows * p) + kPanelRows * column] =
+            row == column ? kRows : 1.0 / (1 + row - column);
+  }
+}
+
+}  // namespace
+
+std::string dense_kernel() { return dense_tiles().name; }
+
+double dense_gflop_per_s() {
+  StageClock clock;
+  ParallelTasks tasks(clock, 1);
+  DenseCholesky cholesky;
+  double best_ms = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kTries; ++i) {
+    fill(cholesky);
+    clock.start();
+    Stopwatch watch;
+    if (!cholesky.factor(tasks)) return std::numeric_limits<double>::quiet_NaN();
+    best_ms = std::min(best_ms, watch.lap_ms());
+  }
+  return cholesky.mflop() / best_ms;  // Mflop a millisecond
+}
+
+}  // namespace cleave
