@@ -21,6 +21,16 @@ def find_program(*targets):
     return ROOT / "build" / "release" / "cleave"
 
 
+def openblas_environment():
+    """The environment with OpenBLAS on one thread and told what processor this is.
+
+    Debian's OpenBLAS runs kernels for the oldest machines on processors newer than itself.
+    """
+    flags = pathlib.Path("/proc/cpuinfo").read_text(encoding="ascii", errors="replace").split()
+    core = "SkylakeX" if "avx512f" in flags else "Haswell"
+    return {"OPENBLAS_CORETYPE": core, **os.environ, "OPENBLAS_NUM_THREADS": "1"}
+
+
 def benchmark_beside(program, name):
     """A program of tests/benchmarks of the same build."""
     return program.parent / "tests" / name

@@ -2,6 +2,7 @@
 import math
 import statistics
 
+import dense_ratios
 import solver_ratios
 from documents import text
 from documents.stored import NoResults, need
@@ -9,6 +10,8 @@ from documents.stored import NoResults, need
 THREADS = ("two_threads.csv", "scripts/two_threads")
 COLD = ("cold_starts.csv", "scripts/cold_starts")
 BENCHMARK = ("solver_benchmark.json", "scripts/benchmark_solvers")
+DENSE = ("dense_benchmark.json", "scripts/benchmark_dense")
+BUSY = ("busy_machine.csv", "scripts/busy_machine")
 SOLVERS = ("report/solvers/rocks_200", "scripts/report_runs --measure-every 25")
 COLD_ROWS = 1000
 
@@ -37,6 +40,20 @@ def two_threads(stored):
 
 def solver_benchmark(stored):
     return (f"{stored.origin(BENCHMARK[0])}:\n\n" + solver_ratios.markdown(stored.benchmark(*BENCHMARK)))
+
+
+def dense(stored):
+    return f"{stored.origin(DENSE[0])}:\n\n" + dense_ratios.markdown(stored.benchmark(*DENSE))
+
+
+def busy_machine(stored):
+    rows = need(stored.table(*BUSY), "busy loops")
+    times = {loops: statistics.median(float(row["t_s_ms"]) for row in rows if int(row["busy_loops"]) == loops)
+             for loops in sorted({int(row["busy_loops"]) for row in rows})}
+    busy = ", ".join(f"{text.number(time / times[0])} times as long beside {loops} busy "
+                     f"{'loop' if loops == 1 else 'loops'}" for loops, time in times.items() if loops)
+    return (f"A step of Large Rock Pile with `mix+fm` takes {text.number(times[0])} ms on two threads of an idle machine, and "
+            f"{busy} of other login sessions (`{BUSY[1]}`; {stored.origin(BUSY[0])}).")
 
 
 def cold_starts(stored):
@@ -81,4 +98,4 @@ def speed_accuracy(stored):
 
 
 BLOCKS = {"two_threads": two_threads, "solver_benchmark": solver_benchmark, "cold_starts": cold_starts,
-          "speed_accuracy": speed_accuracy}
+          "speed_accuracy": speed_accuracy, "dense": dense, "busy_machine": busy_machine}

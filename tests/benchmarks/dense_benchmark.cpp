@@ -1,7 +1,7 @@
 // Times the dense Cholesky factorisation of the interface system against what the processor can do and
 // against OpenBLAS. scripts/benchmark_dense tells OpenBLAS the right processor and prints the ratios.
 //
-//   dense_benchmark [Google Benchmark options]
+//   dense_benchmark [FILE...] [Google Benchmark options]
 //
 // Rows (counter gflop_per_s: n^3 / 3 and lower terms over the time):
 //   peak:SET                multiply-adds on registers with that instruction set, one thread
@@ -11,15 +11,23 @@
 //   side_by_side/ROWS       two factorisations of ours, one thread each, at the same time; the time of one,
 //   so
 //                           twice gflop_per_s is what the machine can give to two threads
+//   inside/ROWS             the same factorisation within the kernel schur-rows, one thread, on a recorded
+//   problem
+//                           FILE with all rows free and 25 bodies a part by index; ROWS: of its interface
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "harness/problem_file.h"
+#include "solver/kernels/kernel.h"
 #include "solver/linear/dense_cholesky.h"
 #include "solver/linear/dense_panel.h"
 #include "tests/benchmarks/multiply_add_peak.h"
@@ -124,6 +132,35 @@ void time_side_by_side(benchmark::State& state, int size) {
   count_flops(state, cholesky[0].mflop());
 }
 
+// A kernel with the system of a problem in which no row is at a bound.
+struct FreeSystem {
+  explicit FreeSystem(const std::filesystem::path& file) : problem(read_problem_file(file).problem) {
+    step.prepare(problem);
+    for (int body = 0; body < step.body_count(); ++body) part_of_body.push_back(body / 25);
+    for (int row = 0; row < step.row_count(); ++row)
+      d.push_back(1 / std::max(problem.compliance[row], 1e-12 * step.diagonal()[row]));
+    kernel->analyze(step, part_of_body, tasks);
+  }
+  StepProblem problem;
+  PreparedStep step;
+  std::vector<int> part_of_body;
+  std::vector<double> d;
+  StageClock clock;
+  ParallelTasks tasks{clock, 1};
+  std::unique_ptr<Kernel> kernel = make_schur_rows_kernel();
+};
+
+void time_inside(benchmark::State& state, FreeSystem& system) {
+  for (auto _ : state) {
+    system.clock.start();
+    if (!system.kernel->factor(system.d, system.tasks))
+      throw std::runtime_error("the matrix is not positive definite");
+    const StageTimes times = system.clock.stop();
+    state.SetIterationTime(1e-3 * times.stage_ms[static_cast<std::size_t>(Stage::factor_interface)]);
+  }
+  count_flops(state, system.kernel->interface_mflop());
+}
+
 template <class Run>
 void add(const std::string& name, Run run, bool manual = true) {
   auto* row = benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond);
@@ -155,8 +192,18 @@ void register_rows() {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
-  cleave::register_rows();
-  benchmark::RunSpecifiedBenchmarks();
-  return 0;
+  try {
+    cleave::register_rows();
+    std::vector<std::unique_ptr<cleave::FreeSystem>> systems;
+    for (int k = 1; k < argc; ++k) {
+      cleave::FreeSystem& system = *systems.emplace_back(std::make_unique<cleave::FreeSystem>(argv[k]));
+      cleave::add("inside/" + std::to_string(system.kernel->interface_unknowns()),
+                  [&system](benchmark::State& state) { cleave::time_inside(state, system); });
+    }
+    benchmark::RunSpecifiedBenchmarks();
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }

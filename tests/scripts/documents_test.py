@@ -26,6 +26,7 @@ USED_BY = {
     "libmetis-dev": ("tests/CMakeLists.txt", "metis"),
     "python3": ("tests/CMakeLists.txt", "python3"),
     "chromium": ("tests/scripts/browser.py", "chromium"),
+    "qemu-user": ("tests/CMakeLists.txt", "qemu-x86_64"),
     "povray": ("scripts/povray_scene.py", "povray"),
     "npm": ("scripts/viewer.py", "npm"),
 }

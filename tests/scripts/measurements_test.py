@@ -1,10 +1,13 @@
 """scripts/two_threads, cold_starts, ablation and the benchmarks with stand-ins for the programs they run."""
 import csv
 import json
+import subprocess
+import unittest
 
 from stand_in import StandInCase
 from synthetic import ROOT
 
+import dense_ratios
 from documents import cuts, speed
 from documents.stored import Stored
 
@@ -64,6 +67,38 @@ class TwoThreadsTest(Measurement):
         self.assertEqual(self.calls(), [])
         self.assertIn("exit code 1: cleave replay: no", self.run_it(code=1, stand_in_code=1).stderr.splitlines()[-1])
         self.assertFalse((self.directory / "out" / "two_threads.csv").exists())
+
+
+class BusyMachineTest(Measurement):
+    script = "busy_machine"
+
+    def test_every_load_is_measured_in_every_round(self):
+        result = self.run_it("--rounds", 2)
+        rows = self.rows("busy_machine.csv")
+        self.assertEqual([(row["round"], row["busy_loops"]) for row in rows],
+                         [(number, loops) for number in "12" for loops in "012"])
+        self.assertIn("2 busy loops: 4.0 ms, 1.00 of idle", result.stdout)
+        self.assertIn("1.00 times as long beside 1 busy loop, 1.00 times as long beside 2 busy loops",
+                      speed.busy_machine(self.stored()))
+
+    def test_no_loop_outlives_a_failure(self):
+        self.assertIn("exit code 1: cleave replay: no", self.run_it(code=1, stand_in_code=1).stderr.splitlines()[-1])
+        running = subprocess.run(["pgrep", "-f", "while True: pass"], capture_output=True, text=True, check=False)
+        self.assertEqual(running.stdout, "")
+
+
+class DenseRatiosTest(unittest.TestCase):
+
+    def entries(self):
+        rates = {"peak:AVX2": 50, "cholesky:AVX2/1000": 40, "openblas/1000": 32, "cholesky_2/1000": 63,
+                 "side_by_side/1000": 35, "inside/870": 38}
+        return [{"name": name, "run_type": "iteration", "gflop_per_s": 1e9 * (rate + spread)}
+                for name, rate in rates.items() for spread in (-5, 0, 20)]
+
+    def test_shares_of_the_peak_and_of_what_two_threads_could_give(self):
+        text = dense_ratios.markdown(self.entries())
+        self.assertIn("| 1000 | 40.0 (80 %) | - | 32.0 | 1.25 | 63.0 | 70.0 | 0.90 |", text)
+        self.assertIn("38.0 Gflop/s (870 interface rows", text)
 
 
 class ColdStartsTest(Measurement):

@@ -29,6 +29,7 @@ LEFT = {
                   for file in ("manifest.json", "steps.csv")],
     "report_runs": [f"scaling/bodies_50/{file}" for file in ("manifest.json", "steps.csv")] + ["motion/x/motion.h5"],
     "ladder": ["ladder.csv"], "extremes": ["extremes.csv"], "benchmark_solvers": ["solver_benchmark.json"],
+    "benchmark_dense": ["dense_benchmark.json"], "busy_machine": ["busy_machine.csv"],
     "benchmark_partitioners": ["partition_benchmark.json"], "two_threads": ["two_threads.csv"],
     "cold_starts": ["cold_starts.csv"], "ablation": ["ablation.csv"], "report": ["figures/verdicts.csv"],
     "readme_figures": ["figure2.png"],
@@ -90,9 +91,10 @@ class ReferenceTest(unittest.TestCase):
     def test_all_is_made_in_order_and_replaces_what_was_there(self):
         calls, said = self.run_it()
         self.assertEqual([call.split()[0] for call in calls], [stage.command[0] for stage in STAGES] + ["readme_tables"])
-        self.assertIn("[1/13] matrix, about 35 min: scripts/reproduce --measure-every 10 --out out/reference/report", said)
+        self.assertIn("[1/15] matrix, about 20 min: scripts/reproduce --measure-every 10 --out out/reference/report", said)
         self.assertEqual(self.results(), {
             "README.md", "provenance.json", "extremes.csv", "solver_benchmark.json", "partition_benchmark.json",
+            "dense_benchmark.json", "busy_machine.csv",
             "two_threads.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
             "report/verdicts.csv", "report/scaling/bodies_50/manifest.json", "report/scaling/bodies_50/steps.csv",
             "figures/figure2.png", *(f"full/{scene}/{file}" for scene in
