@@ -13,7 +13,7 @@
 //                           twice gflop_per_s is what the machine can give to two threads
 //   inside/ROWS             the same factorisation within the kernel schur-rows, one thread, on a recorded
 //   problem
-//                           FILE with all rows free and 25 bodies a part by index; ROWS: of its interface
+//                           FILE with all rows free, split by mindp; ROWS: of its interface
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -23,10 +23,13 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
 #include "harness/problem_file.h"
+#include "harness/problem_graph.h"
+#include "partition/registry.h"
 #include "solver/kernels/kernel.h"
 #include "solver/linear/dense_cholesky.h"
 #include "solver/linear/dense_panel.h"
@@ -45,16 +48,17 @@ double entry(int row, int column, int size) {
   return row == column ? size : 1.0 / (1 + (7 * row + 3 * column) % 11);
 }
 
-void fill(DenseCholesky& cholesky, int size) {
+// As the kernel does, a task a panel.
+void fill(DenseCholesky& cholesky, int size, ParallelTasks& tasks) {
   cholesky.resize(size);
-  for (int p = 0; p < cholesky.panel_count(); ++p) {
+  tasks.run(Stage::form_interface, cholesky.panel_count(), [&](int p) {
     double* entries = cholesky.begin_panel(p);
     for (int row = kPanelRows * p; row < std::min(size, kPanelRows * (p + 1)); ++row) {
       for (int column = 0; column <= row; ++column) {
         entries[(row - kPanelRows * p) + kPanelRows * column] = entry(row, column, size);
       }
     }
-  }
+  });
 }
 
 void count_flops(benchmark::State& state, double mflop) {
@@ -71,7 +75,7 @@ void time_peak(benchmark::State& state, const DenseTiles& tiles) {
 
 // Fills and factors, and times the factorisation.
 double factor_seconds(DenseCholesky& cholesky, int size, ParallelTasks& tasks) {
-  fill(cholesky, size);
+  fill(cholesky, size, tasks);
   const auto begin = StageClock::Clock::now();
   if (!cholesky.factor(tasks)) throw std::runtime_error("the matrix is not positive definite");
   return std::chrono::duration<double>(StageClock::Clock::now() - begin).count();
@@ -113,11 +117,11 @@ void time_side_by_side(benchmark::State& state, int size) {
   DenseCholesky cholesky[2];
   for (auto _ : state) {
     double seconds[2] = {};
-    for (DenseCholesky& one : cholesky) fill(one, size);
     std::atomic<int> ready = 0;
     const auto run = [&](int k) {
       StageClock clock;
       ParallelTasks tasks(clock, 1);
+      fill(cholesky[k], size, tasks);
       raise(ready);
       wait_until(ready, 2);
       const auto begin = StageClock::Clock::now();
@@ -136,7 +140,8 @@ void time_side_by_side(benchmark::State& state, int size) {
 struct FreeSystem {
   explicit FreeSystem(const std::filesystem::path& file) : problem(read_problem_file(file).problem) {
     step.prepare(problem);
-    for (int body = 0; body < step.body_count(); ++body) part_of_body.push_back(body / 25);
+    const auto mindp = std::ranges::find(partitioners(), std::string_view("mindp"), &PartitionerEntry::name);
+    part_of_body = mindp->make()->run(body_graph_of(problem), {}).part_of_body;
     for (int row = 0; row < step.row_count(); ++row)
       d.push_back(1 / std::max(problem.compliance[row], 1e-12 * step.diagonal()[row]));
     kernel->analyze(step, part_of_body, tasks);
