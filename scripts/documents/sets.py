@@ -26,7 +26,7 @@ COMMANDS = {
     "report/verdicts.csv": "scripts/report",
     "ladder/ladder.csv": "scripts/ladder",
     "ladder/ladder_full_exact.csv": "scripts/ladder --full --solver exact",
-    "extremes.csv": "scripts/extremes --seeds 1,2",
+    "extremes.csv": "scripts/extremes --seeds 1",
     "cold_starts.csv": "scripts/cold_starts",
     "solver_benchmark.json": "scripts/benchmark_solvers",
     "dense_benchmark.json": "scripts/benchmark_dense",
