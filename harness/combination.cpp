@@ -149,7 +149,7 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   judge_outcome(problem, chosen.outcome);
 
   set_names(row);
-  row.repeat_count = repeats_;
+  row.repeat_count = static_cast<int>(repeats.size());
   row.status = to_string(chosen.outcome.status);
   row.ode_messages += chosen.outcome.ode_messages;
   if (splitter_) set_split(problem, repeats, row);

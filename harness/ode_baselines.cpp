@@ -12,6 +12,8 @@
 namespace cleave {
 namespace {
 
+constexpr int kThreadsWithoutModel = 2;  // of a clock
+
 constexpr SolverEntry kBaselines[] = {
     {"ode-step", "ODE's dWorldStep on the same problem, up to --ode-step-max-rows rows",
      "Baraff 1994; ODE manual"},
@@ -169,6 +171,7 @@ class OdeSolver : public OdeBaseline {
       text = error.what();
     }
     summary.times = clock_.stop();
+    summary.interface_unknowns = summary.fallbacks = summary.refinements = -1;
     std::string first_message;
     messages_ = feedback.world().take_message_count(&first_message);
     summary.message = text.empty() ? first_message : text;
@@ -179,7 +182,7 @@ class OdeSolver : public OdeBaseline {
 
   bool quick_;
   OdeBaselineOptions options_;
-  StageClock clock_;
+  StageClock clock_{kThreadsWithoutModel};  // what is inside ODE's call is not known
 };
 
 }  // namespace

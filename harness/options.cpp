@@ -64,7 +64,8 @@ void check_friction(const Given& given, const RunOptions& options) {
     exclude(given, "friction-force-n", "has a meaning only with --friction constant");
   if (options.extract.friction == FrictionModel::constant &&
       options.ode_baseline.friction == OdeFriction::pyramid)
-    reject("ode-friction", "pyramid follows normal forces, which --friction constant does not");
+    reject("ode-friction",
+           "pyramid follows normal forces, which --friction constant does not; allowed: limits");
 }
 
 // The two halves of a solver name; short names have them in the table, a baseline has none.

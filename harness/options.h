@@ -1,6 +1,6 @@
 // The options of a run and the one table they come from: the command line, --help, the manifest and the run
 // id are all drawn from run_option_specs(). To add an option: a member of RunOptions and a row in
-// options.cpp.
+// options_table.cpp.
 #pragma once
 
 #include <cstdint>

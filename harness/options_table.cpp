@@ -142,7 +142,7 @@ std::vector<OptionSpec> experiment_options() {
               at(&RunOptions::skip)),
       integer("repeats", kAtLeastOne, "solves of every measured cell from the same warm start",
               at(&RunOptions::repeats)),
-      integer("threads", {1, 1024}, "OpenMP threads", at(&RunOptions::threads)),
+      integer("threads", {1, 1024}, "threads of a solve", at(&RunOptions::threads)),
       {"seed", Kind::number, "N", "seed of the scene's random choices, in [0, 2^64)",
        [](RunOptions& o, const std::string& value) { o.seed = parse_seed("seed", value); },
        [](const RunOptions& o) { return std::to_string(o.seed); }},

@@ -8,9 +8,11 @@ namespace {
 
 [[gnu::constructor(101)]] void require_cpu() {
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")) return;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"))
+    return;
   const char* text =
-      "cleave: this processor has no AVX2 and FMA instructions (x86-64-v3), which this program is built for\n";
+      "cleave: this processor has no AVX2 and FMA instructions (x86-64-v3), which this program is built "
+      "for\n";
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, std::strlen(text));
   ::_exit(1);
 }

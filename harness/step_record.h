@@ -24,7 +24,8 @@
 
 namespace cleave {
 
-// In the last column of every row. Counts up when a column changes its meaning; new ones come at the end.
+// In the column schema_version of every row. Counts up when a column changes its meaning; new ones come at
+// the end.
 inline constexpr const char* kStepsSchema = "cleave-steps-2";
 
 // Who a column is about. The machine's may differ between two runs of the same experiment, all others may
@@ -121,7 +122,8 @@ void visit_fields(Record& r, Visitor&& visitor) {
     visitor(name, member, help, ColumnOf::machine);
   };
   visit("run_id", r.run_id,
-        "fingerprint of all options but threads, out and force: equal experiments have equal ids");
+        "fingerprint of all options but threads, out, force and record-motion: equal experiments have equal "
+        "ids");
   visit("scene", r.scene, "name of the scene");
   visit("seed", r.seed, "seed of the scene's random choices");
   visit("step", r.step, "number of the step, from 0");
@@ -133,7 +135,7 @@ void visit_fields(Record& r, Visitor&& visitor) {
   visit("strategy", r.strategy, "strategy that ran at the end");
   visit("kernel", r.kernel, "kernel that ran at the end");
   visit("friction", r.friction, "friction model");
-  visit_machine("threads", r.threads, "OpenMP threads");
+  visit_machine("threads", r.threads, "threads of a solve");
   visit("status", r.status,
         "ok, not_converged, timeout, out_of_memory, diverged, refused, crashed or skipped; ok means solved "
         "and within "

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -59,17 +60,45 @@ struct UsedBy {
 };
 constexpr const char* kParts = "a solver that works on parts";
 constexpr const char* kStrategies = "a solver with a strategy";
+
+// The parts are those of the first partitioner and refiner.
+bool splits_with(const RunOptions& options, std::initializer_list<std::string_view> names) {
+  return uses_parts(options) && std::ranges::any_of(names, [&](std::string_view name) {
+           return name == options.partitioners.front() || name == options.refiners.front();
+         });
+}
+
+bool advances_with(const RunOptions& options, std::initializer_list<std::string_view> names) {
+  return std::ranges::find(names, options.advance) != names.end();
+}
+
 constexpr UsedBy kUsedBy[] = {
     {"partitioner", uses_parts, kParts},
     {"refiner", uses_parts, kParts},
     {"max-bodies", uses_parts, kParts},
-    {"tau-mr", uses_parts, kParts},
-    {"tau-mix", uses_parts, kParts},
-    {"max-growth", uses_parts, kParts},
-    {"edge-weight", uses_parts, kParts},
-    {"degree", uses_parts, kParts},
-    {"degree-scope", uses_parts, kParts},
-    {"as-printed", uses_parts, kParts},
+    {"tau-mr", [](const RunOptions& o) { return splits_with(o, {"mr"}); }, "parts by mr"},
+    {"tau-mix", [](const RunOptions& o) { return splits_with(o, {"mix"}); }, "parts by mix"},
+    {"max-growth", [](const RunOptions& o) { return splits_with(o, {"fm"}); }, "parts refined by fm"},
+    {"edge-weight",
+     [](const RunOptions& o) {
+       return splits_with(o, {"mix", "kl", "fm"});
+     },
+     "parts by mix, or refined by kl or fm"},
+    {"degree",
+     [](const RunOptions& o) {
+       return splits_with(o, {"mindp", "maxdp", "mix"});
+     },
+     "parts by mindp, maxdp or mix"},
+    {"degree-scope",
+     [](const RunOptions& o) {
+       return splits_with(o, {"mindp", "maxdp", "mix"});
+     },
+     "parts by mindp, maxdp or mix"},
+    {"as-printed",
+     [](const RunOptions& o) {
+       return splits_with(o, {"maxdp", "mix", "kl", "fm"});
+     },
+     "parts by maxdp or mix, or refined by kl or fm"},
     {"skip-small-islands", uses_parts, kParts},
     {"max-iterations", has_strategy, kStrategies},
     {"reuse-analysis", has_strategy, kStrategies},
@@ -79,11 +108,15 @@ constexpr UsedBy kUsedBy[] = {
        return strategy == "pivot" || strategy == "auto";
      },
      "a solver of strategy pivot or auto"},
-    {"sweeps", [](const RunOptions& options) { return options.advance == "pgs"; }, "pgs"},
-    {"quickstep-iterations", [](const RunOptions& options) { return options.advance == "ode-quickstep"; },
+    {"sweeps", [](const RunOptions& o) { return advances_with(o, {"pgs"}); }, "pgs"},
+    {"quickstep-iterations", [](const RunOptions& o) { return advances_with(o, {"ode-quickstep"}); },
      "ode-quickstep"},
-    {"ode-step-max-rows", [](const RunOptions& options) { return options.advance == "ode-step"; },
-     "ode-step"},
+    {"ode-step-max-rows", [](const RunOptions& o) { return advances_with(o, {"ode-step"}); }, "ode-step"},
+    {"ode-friction",
+     [](const RunOptions& o) {
+       return advances_with(o, {"ode-step", "ode-quickstep"});
+     },
+     "ode-step or ode-quickstep"},
 };
 
 // Only the solver of --advance runs, so an option that it does not use would do nothing.
@@ -91,6 +124,9 @@ void check_used(const Given& given, const RunOptions& options) {
   for (const UsedBy& row : kUsedBy)
     if (given.contains(row.option) && !row.used(options))
       throw std::invalid_argument(std::string("--") + row.option + ": --advance " + options.advance +
+                                  (uses_parts(options) ? " on parts by " + options.partitioners.front() +
+                                                             "+" + options.refiners.front()
+                                                       : "") +
                                   " does not use it; allowed with " + row.by);
 }
 

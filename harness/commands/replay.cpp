@@ -1,6 +1,4 @@
 // cleave replay: solves recorded problems with every combination.
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -174,7 +172,6 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& argv) {
   for (const std::string& file : options.files) read_problem_file(file);  // before anything is created
   if (options.write_solutions) check_names(options);
   check_output_directory(options.solve.out, options.solve.force, files_written(options));
-  omp_set_num_threads(options.solve.threads);
   Replay work(options);
   const fs::path out = create_output_directory(options.solve.out);
   Manifest manifest(out / "manifest.json", "replay", argv, values_of(options));

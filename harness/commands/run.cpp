@@ -23,6 +23,8 @@ std::string key_text(const RunOptions& options) {
   json.field("threads", options.threads);
   json.field("git_hash", build.git_hash);
   json.field("git_dirty", build.git_dirty);
+  json.field("flags", build.flags);
+  json.field("build_type", build.build_type);
   json.field("cpu_model", machine.cpu_model);
   json.field("cores", machine.cores);
   json.end_object();

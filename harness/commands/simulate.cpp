@@ -1,7 +1,5 @@
 #include "harness/commands/simulate.h"
 
-#include <omp.h>
-
 #include <optional>
 #include <utility>
 
@@ -16,7 +14,6 @@ namespace cleave {
 
 int simulate(const std::string& command, const std::vector<std::string>& argv, const RunOptions& options,
              Simulation::Observer observe) {
-  omp_set_num_threads(options.threads);
   std::optional<MotionRecorder> motion;
   if (options.record_motion) motion.emplace(std::filesystem::path(options.out) / "motion.h5", options);
   Simulation::Watcher watch;

@@ -75,7 +75,10 @@ TEST_F(ManifestOfARun, SaysWhatRanAndHowItEnded) {
   EXPECT_EQ(ask_manifest("m['seed'] == 2**64 - 1 and m['options']['seed'] == m['seed']"), "True");
   EXPECT_EQ(ask_manifest("m['result']['rows'], m['result']['rows_ok'], m['result']['steps']"), "(2, 2, 6)");
   EXPECT_EQ(ask_manifest("m['utc_start'] <= m['utc_end'] and len(m['utc_end']) == 20"), "True");
-  EXPECT_EQ(ask_manifest("m['machine']['omp_threads'], len(m['machine']['load_average'])"), "(2, 3)");
+  EXPECT_EQ(
+      ask_manifest(
+          "m['options']['threads'], m['machine']['omp_threads'] >= 1, len(m['machine']['load_average'])"),
+      "(2, True, 3)");
   EXPECT_EQ(ask_manifest("m['machine']['cores'] >= 1 and m['machine']['cpu_model'] != ''"), "True");
   EXPECT_EQ(ask_manifest("all(m['build'][k] for k in ('git_hash', 'git_dirty', 'compiler', 'flags'))"),
             "True");

@@ -85,39 +85,42 @@ TEST(Record, PhysicsOptionsReachTheFile) {
 TEST(Record, RefusesOptionsThatItsSolverDoesNotUse) {
   struct Case {
     std::string option, value, used_by, not_used_by;
+    Arguments parts = {};  // of used_by
   };
   const std::vector<Case> cases = {{"--partitioner", "mix", "schur", "exact"},
                                    {"--refiner", "fm", "schur", "monolithic"},
                                    {"--max-bodies", "5", "pivot:schur-bodies", "exact"},
-                                   {"--tau-mr", "4", "schur", "exact"},
-                                   {"--tau-mix", "0.3", "schur", "exact"},
-                                   {"--max-growth", "0.1", "schur", "pgs"},
-                                   {"--edge-weight", "pairs", "schur", "exact"},
+                                   {"--tau-mr", "4", "schur", "schur", {"--partitioner", "mr"}},
+                                   {"--tau-mix", "0.3", "schur", "schur", {"--partitioner", "mix"}},
+                                   {"--max-growth", "0.1", "schur", "schur", {"--refiner", "fm"}},
+                                   {"--edge-weight", "pairs", "schur", "schur", {"--refiner", "kl"}},
                                    {"--degree", "constraints", "schur", "exact"},
                                    {"--degree-scope", "whole", "schur", "exact"},
-                                   {"--as-printed", "", "schur", "exact"},
+                                   {"--as-printed", "", "schur", "schur", {"--partitioner", "maxdp"}},
                                    {"--skip-small-islands", "", "schur", "exact"},
                                    {"--max-iterations", "90", "exact", "pgs"},
                                    {"--reuse-analysis", "", "exact", "ode-quickstep"},
                                    {"--predictor-sweeps", "20", "exact", "interior-point:monolithic"},
                                    {"--sweeps", "300", "pgs", "exact"},
                                    {"--quickstep-iterations", "30", "ode-quickstep", "ode-step"},
-                                   {"--ode-step-max-rows", "400", "ode-step", "ode-quickstep"}};
-  for (const auto& [option, value, used_by, not_used_by] : cases) {
+                                   {"--ode-step-max-rows", "400", "ode-step", "ode-quickstep"},
+                                   {"--ode-friction", "pyramid", "ode-step", "exact"}};
+  for (const auto& [option, value, used_by, not_used_by, parts] : cases) {
     SCOPED_TRACE(option);
     const TemporaryDirectory directory;
     Arguments record = {"record", "--scene", "rock_pile", "--bodies", "2", "--at", "1", option};
     if (!value.empty()) record.push_back(value);
-    const auto result = [&](const std::string& advance) {
-      return run_cleave(record + Arguments{"--advance", advance, "--out", directory / advance});
+    const auto result = [&](const std::string& advance, const std::string& out, const Arguments& more) {
+      return run_cleave(record + Arguments{"--advance", advance, "--out", directory / out} + more);
     };
-    EXPECT_EQ(result(used_by).exit_code, 0) << result(used_by).err;
-    const ProgramResult refused = result(not_used_by);
+    const ProgramResult taken = result(used_by, "taken", parts);
+    EXPECT_EQ(taken.exit_code, 0) << taken.err;
+    const ProgramResult refused = result(not_used_by, "refused", {});
     EXPECT_EQ(refused.exit_code, 1);
     EXPECT_TRUE(refused.err.starts_with("cleave record: " + option + ": --advance " + not_used_by))
         << refused.err;
     EXPECT_EQ(count_lines(refused.err), 1);
-    EXPECT_FALSE(fs::exists(directory / not_used_by));
+    EXPECT_FALSE(fs::exists(directory / "refused"));
   }
 }
 

@@ -35,7 +35,9 @@ TEST(RunKey, IsWhatTheManifestHoldsAndRunsNothing) {
                            "parts = {**m, **m['options'], **m['build'], **m['machine']}; "
                            "print({name: parts[name] for name in k} == k, sorted(k))",
                            key, directory / "run/manifest.json"});
-  EXPECT_EQ(same.out, "True ['cores', 'cpu_model', 'git_dirty', 'git_hash', 'run_id', 'threads']\n")
+  EXPECT_EQ(
+      same.out,
+      "True ['build_type', 'cores', 'cpu_model', 'flags', 'git_dirty', 'git_hash', 'run_id', 'threads']\n")
       << same.err << key;
 }
 
