@@ -8,6 +8,7 @@ import dataclasses
 import io
 import json
 import pathlib
+import re
 
 SCENES = ("chain_drop", "log_tower", "rock_pile", "large_rock_pile")
 PARTITIONERS = ("mindp", "maxdp", "bfs", "mr", "mix")
@@ -25,10 +26,24 @@ class ResultError(Exception):
 
 
 class CommandLine(argparse.ArgumentParser):
-    """Wrong options are bad input: exit code 1, as in the program."""
+    """Wrong options are bad input: exit code 1 and words as in the program, '--rounds is 0, expected ...'."""
 
     def error(self, message):
+        message = re.sub(r"^argument (\S+): is ", r"\1 is ", message)
         self.exit(1, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def at_least(least):
+    """The type of an option that is a whole number from here on."""
+
+    def parse(text):
+        if not re.fullmatch(r"-?\d+", text):
+            raise argparse.ArgumentTypeError(f"is '{text}', expected a whole number")
+        if int(text) < least:
+            raise argparse.ArgumentTypeError(f"is {text}, expected at least {least}")
+        return int(text)
+
+    return parse
 
 
 def counted(number, noun):

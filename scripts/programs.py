@@ -54,7 +54,13 @@ def record(program, directory, scene, at, *options):
     return [directory / f"{scene}_step{step:06}.h5" for step in at]
 
 
-def replay(program, directory, files, *options):
-    """Rows of a replay, also of cells that failed."""
+def replay(program, directory, files, *options, all_ok=False):
+    """Rows of a replay, also of cells that failed, unless all have to be ok."""
     run([program, "replay", *files, *options, "--out", directory, "--force"], allowed=(0, 2))
-    return load_steps(directory / "steps.csv")[0]
+    rows = load_steps(directory / "steps.csv")[0]
+    failed = [row for row in rows if row["status"] != "ok"]
+    if all_ok and failed:
+        first = failed[0]
+        raise ResultError(f"{len(failed)} of {len(rows)} replayed cells are not ok, first: step {first['step']}, "
+                          f"{first['partitioner']} {first['refiner']}: status {first['status']}")
+    return rows

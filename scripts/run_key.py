@@ -1,4 +1,4 @@
-"""The one key that decides whether results are there already: run id + threads + commit + machine.
+"""The one key that decides whether results are there already: run id + threads + commit + how it was built + machine.
 
 The program itself says what a run would be known by (cleave run ... --print-key), so that `all` stands for the
 partitioners, refiners and solvers of today; a manifest says what its results are known by.
@@ -9,7 +9,7 @@ import subprocess
 from cleave_results import ResultError
 
 RUN = ("run_id", "threads")
-BUILD = ("git_hash", "git_dirty")
+BUILD = ("git_hash", "git_dirty", "flags", "build_type")
 MACHINE = ("cpu_model", "cores")
 
 
@@ -20,7 +20,11 @@ def program_key(program, arguments):
     if done.returncode != 0:
         words = (done.stderr.strip().splitlines() or ["no message"])[-1]
         raise ResultError(f"{program} --print-key stopped with exit code {done.returncode}: {words}")
-    return json.loads(done.stdout)
+    key = json.loads(done.stdout)
+    missing = [name for name in (*RUN, *BUILD, *MACHINE) if name not in key]
+    if missing:
+        raise ResultError(f"{program} --print-key does not say {', '.join(missing)}; build it anew")
+    return key
 
 
 def build_key(program):
@@ -34,18 +38,25 @@ def manifest_key(manifest):
     return {name: part.get(name) for names, part in zip((RUN[:1], RUN[1:], BUILD, MACHINE), parts) for name in names}
 
 
-def difference(kept, wanted):
-    """Why results known as `kept` are not those of `wanted`, in words; None where they are."""
+def place_difference(kept, wanted):
+    """Why results known as `kept` are not of the build and machine of `wanted`, in words; None where they are."""
     if wanted["git_dirty"] != "false":
         return "this build has local changes or no commit, and results of such a build are never kept"
     if kept.get("git_dirty") != "false":
         return "they were made by a build with local changes or without a commit"
     if kept["git_hash"] != wanted["git_hash"]:
         return f"they were made by commit {str(kept['git_hash'])[:10]}, this is {wanted['git_hash'][:10]}"
-    for name in MACHINE:
-        if kept.get(name) != wanted[name]:
-            return f"they were made on another machine: {name} {kept.get(name)}, here {wanted[name]}"
-    for name in RUN:
-        if name in wanted and kept.get(name) != wanted[name]:
-            return f"they are of another experiment: {name} {kept.get(name)}, wanted {wanted[name]}"
+    for names, other in ((BUILD, "by a program built otherwise"), (MACHINE, "on another machine")):
+        for name in names:
+            if kept.get(name) != wanted[name]:
+                return f"they were made {other}: {name} {kept.get(name)}, here {wanted[name]}"
     return None
+
+
+def difference(kept, wanted):
+    """Why results known as `kept` are not those of `wanted`, in words; None where they are."""
+    reason = place_difference(kept, wanted)
+    for name in RUN:
+        if reason is None and name in wanted and kept.get(name) != wanted[name]:
+            reason = f"they are of another experiment: {name} {kept.get(name)}, wanted {wanted[name]}"
+    return reason

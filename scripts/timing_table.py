@@ -16,8 +16,11 @@ SAME_IN_A_SCENE = ("solver", "threads", "friction", "max_bodies", "tau_mr", "tau
                    "cold")
 # Nor over rows of a solver with other options.
 SAME_SOLVER = ("predictor_sweeps", "max_iterations", "reuse_analysis")
+# Nor over rows of other problems: another scene, or steps of a world that moved otherwise.
+SAME_WORLD = ("scene_options", "mode", "advance", "steps")
+UNKNOWN = "unknown"  # the value of a column that a file does not have
 # What else is looked at where it is there.
-READ_TOO = ("bodies", "steps", "t_s_waiting_ms")
+READ_TOO = ("bodies", "t_s_waiting_ms")
 # The paper's runs: bodies of each scene, and steps of all.
 PAPER_BODIES = {"chain_drop": 100, "log_tower": 201, "rock_pile": 200, "large_rock_pile": 600}
 PAPER_STEPS = 500
@@ -107,8 +110,8 @@ def _value(row, column):
 
 
 def _scene_table(scene, rows, paper):
-    for column in (*SAME_IN_A_SCENE, *SAME_SOLVER):
-        values = sorted({row[column] for row in rows if column in row})
+    for column in (*SAME_IN_A_SCENE, *SAME_SOLVER, *SAME_WORLD):
+        values = sorted({row.get(column, UNKNOWN) for row in rows}, key=lambda value: (value == UNKNOWN, value))
         if len(values) > 1:
             raise ResultError(f"rows of {scene} mix {column} {', '.join(values)}; "
                               f"choose one with --where {column}={values[0]}")
@@ -137,7 +140,7 @@ def _differences(scene, rows):
     wanted = (("steps", PAPER_STEPS), ("bodies", PAPER_BODIES[scene]))
     parts = []
     for column, paper in wanted:
-        values = {row.get(column, "unknown") for row in rows}
+        values = {row.get(column, UNKNOWN) for row in rows}
         if values != {str(paper)}:
             parts.append(f"{' and '.join(sorted(values))} {column} (paper {paper})")
     return ", ".join(parts)
@@ -149,7 +152,7 @@ def _cell(scene, names, rows, steps, paper):
     cell.ok = len(measured)
     if measured:
         cell.ours = Times(_mean(measured, "t_s_ms"), _mean(measured, "t_pr_ms"))
-        cell.waiting = _waiting_share(measured)
+        cell.waiting = waiting_share(measured)
     if (scene, *names) in paper:
         cell.paper = Times(*paper[(scene, *names)])
     return cell
@@ -162,7 +165,8 @@ def _mean(rows, column):
     return math.fsum(row.number(column) for row in rows) / len(rows)
 
 
-def _waiting_share(rows):
+def waiting_share(rows):
+    """Time in which threads waited for a core over t_s; nan where no row knows it."""
     known = [row for row in rows if "t_s_waiting_ms" in row and math.isfinite(row.number("t_s_waiting_ms"))]
     total = math.fsum(row.number("t_s_ms") for row in known)
     return math.fsum(row.number("t_s_waiting_ms") for row in known) / total if total > 0 else math.nan

@@ -1,7 +1,9 @@
 """Table 1 beside the paper's, what it says, and an excerpt of what scripts/reproduce prints."""
+import pathlib
 import statistics
+import subprocess
 
-from cleave_results import SCENES, load_paper_table1
+from cleave_results import SCENES, ResultError, load_paper_table1
 from documents import text
 from documents.stored import need
 from table_formats import format_markdown, format_text
@@ -9,6 +11,7 @@ from timing_table import build_tables
 
 DATA = ("full", "scripts/reproduce --measure-every 10")
 EXCERPT_SCENE = "rock_pile"
+CHECK = pathlib.Path(__file__).resolve().parents[1] / "check_matrix"
 FULL_COMBINATIONS = ("mindp", "mix", "bfs")
 
 
@@ -25,7 +28,16 @@ def excerpt(stored):
     tables = [table for table in _tables(stored) if table.scene == EXCERPT_SCENE]
     lines = format_text(need(tables, EXCERPT_SCENE), [])
     title, *rest = lines[lines.index("\n\n") + 2:].splitlines()
-    return "```\n" + "\n".join([title, *rest[:5], "...", *rest[14:]]) + "\n```"
+    first, second, *_, last = _checked(stored)
+    return "```\n" + "\n".join([title, *rest[:5], "...", *rest[14:], "", first, second, "...", last]) + "\n```"
+
+
+def _checked(stored):
+    """What scripts/check_matrix prints, which scripts/reproduce ends with."""
+    done = subprocess.run([CHECK, stored.path(*DATA)], capture_output=True, text=True, check=False)
+    if done.returncode not in (0, 3):
+        raise ResultError(done.stderr.strip())
+    return done.stdout.splitlines()
 
 
 def _lowest(table, side):

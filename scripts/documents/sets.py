@@ -46,9 +46,9 @@ def _minutes(stored, name):
 
 
 def reference_sets(stored):
-    lines = [[f"`{name}`", what, f"`{COMMANDS[name]}`", _minutes(stored, name), stored.origin(name)]
-             for name, what in SETS.items() if (stored.root / name).exists()]
-    missing = [f"`{name}` (`{COMMANDS[name]}`)" for name in SETS if not (stored.root / name).exists()]
+    there = [name for name in SETS if stored.has(name, COMMANDS[name])]
+    lines = [[f"`{name}`", SETS[name], f"`{COMMANDS[name]}`", _minutes(stored, name), stored.origin(name)] for name in there]
+    missing = [f"`{name}` (`{COMMANDS[name]}`)" for name in SETS if name not in there]
     lines = text.table(["set", "what", "made by", "took", "on"], lines)
     return lines + (f"\n\nNot stored yet: {text.listed(missing)}." if missing else "")
 

@@ -3,9 +3,12 @@ import math
 import statistics
 
 import dense_ratios
+import model_ratios
 import solver_ratios
+import thread_times
+from cleave_results import SCENES
 from documents import text
-from documents.stored import NoResults, need
+from documents.stored import need
 
 THREADS = ("two_threads.csv", "scripts/two_threads")
 COLD = ("cold_starts.csv", "scripts/cold_starts")
@@ -13,29 +16,36 @@ BENCHMARK = ("solver_benchmark.json", "scripts/benchmark_solvers")
 DENSE = ("dense_benchmark.json", "scripts/benchmark_dense")
 BUSY = ("busy_machine.csv", "scripts/busy_machine")
 SOLVERS = ("report/solvers/rocks_200", "scripts/report_runs --measure-every 25")
+ONE_THREAD = ("report/one_thread", "scripts/report_runs --measure-every 25")
+TWO_THREADS = ("full", "scripts/reproduce --measure-every 10")
 COLD_ROWS = 1000
-
-
-def _medians(rows):
-    """{(combination, step): {threads: median t_s}}"""
-    times = {}
-    for row in rows:
-        found = times.setdefault((f"{row['partitioner']}+{row['refiner']}", int(row["step"])), {})
-        found.setdefault(int(row["threads"]), []).append(float(row["t_s_ms"]))
-    return {key: {threads: statistics.median(values) for threads, values in found.items()}
-            for key, found in times.items()}
 
 
 def two_threads(stored):
     rows = need(stored.table(*THREADS), "two threads")
-    medians = _medians(rows)
-    steps = sorted({step for _, step in medians})
-    lines = [[f"`{name}`", *(f"{medians[name, step][1] / medians[name, step][2]:.2f}" for step in steps)]
-             for name in dict.fromkeys(name for name, _ in medians)]
+    ratios = thread_times.speed_ups(rows)
+    steps = sorted({step for _, step in ratios})
+    lines = [[f"`{name}`", *(f"{ratios[name, step]:.2f}" for step in steps)]
+             for name in dict.fromkeys(name for name, _ in ratios)]
     rounds = len({row["round"] for row in rows})
     return (f"t_s of one thread over that of two on recorded steps of Large Rock Pile, medians of {rounds} replays "
             f"with each, in turn (`{THREADS[1]}`; {stored.origin(THREADS[0])}):\n\n" +
             text.table(["", *(f"step {step}" for step in steps)], lines))
+
+
+def model(stored):
+    """The modelled two-thread time against the measured one."""
+    one, two = (model_ratios.solved_rows(stored.rows(*data), threads, data[0])
+                for data, threads in ((ONE_THREAD, 1), (TWO_THREADS, 2)))
+    found = model_ratios.compare(one, two)
+    ratios = model_ratios.ratios(need(found.pairs, "the model"), ("scene",))
+    lines = [[scene.replace("_", " ").title(), len(ratios[scene,]),
+              *map(text.number, model_ratios.quartiles(ratios[scene,]))] for scene in SCENES if (scene,) in ratios]
+    return (f"Modelled over measured t_s on two threads, rows of `{ONE_THREAD[0]}` against those of `{TWO_THREADS[0]}` "
+            f"({stored.origin(ONE_THREAD[0])}); {found.waited} pairs that waited for a core are "
+            "left out:\n\n" +
+            text.table(["scene", "pairs", "lower quartile", "median", "upper quartile"], lines) +
+            "\n\nThe model has no look-ahead in the dense interface, two threads do.")
 
 
 def solver_benchmark(stored):
@@ -47,9 +57,7 @@ def dense(stored):
 
 
 def busy_machine(stored):
-    rows = need(stored.table(*BUSY), "busy loops")
-    times = {loops: statistics.median(float(row["t_s_ms"]) for row in rows if int(row["busy_loops"]) == loops)
-             for loops in sorted({int(row["busy_loops"]) for row in rows})}
+    times = thread_times.by_load(need(stored.table(*BUSY), "busy loops"))
     busy = ", ".join(f"{text.number(time / times[0])} times as long beside {loops} busy "
                      f"{'loop' if loops == 1 else 'loops'}" for loops, time in times.items() if loops)
     return (f"A step of Large Rock Pile with `mix+fm` takes {text.number(times[0])} ms on two threads of an idle machine, and "
@@ -87,15 +95,14 @@ def speed_accuracy(stored):
                 rows = [row for row in run.rows if row["solver"] == solver]
                 if all(row["status"] == "ok" for row in rows):
                     direct.append((_cost(rows)[0], solver))
-    if not direct or not sweeps:
-        raise NoResults(f"Nothing is stored yet: `{SOLVERS[1]}` makes `results/{SOLVERS[0]}`.")
-    time, solver = min(direct)
+    time, solver = min(need(direct, "a direct solver"))
     shown = [[count, text.number(cost), text.number(cost / time), text.number(error)]
-             for count, (cost, error) in sorted(sweeps.items())]
+             for count, (cost, error) in sorted(need(sweeps, "Gauss-Seidel").items())]
     return (f"On 200 rocks, one thread, `{solver}` solves a step exactly in {text.number(time)} ms on the mean, the fastest "
             f"of the direct solvers; projected Gauss-Seidel ({stored.origin(SOLVERS[0])}):\n\n" +
             text.table(["sweeps", "ms", f"of the time of `{solver}`", "median residual, m/s"], shown))
 
 
 BLOCKS = {"two_threads": two_threads, "solver_benchmark": solver_benchmark, "cold_starts": cold_starts,
-          "speed_accuracy": speed_accuracy, "dense": dense, "busy_machine": busy_machine}
+          "speed_accuracy": speed_accuracy, "dense": dense, "busy_machine": busy_machine,
+          "model": model}

@@ -16,12 +16,19 @@ class Stored:
 
     def __init__(self, root):
         self.root = pathlib.Path(root)
+        self.gaps = {}  # what was asked for below results/ and is not there, or not with its origin: why
+
+    def has(self, name, made_by):
+        """Whether a file or directory is there; where it is not, that is a gap."""
+        if (self.root / name).exists():
+            return True
+        self.gaps[name] = f"not stored, {made_by} makes it"
+        return False
 
     def path(self, name, made_by):
-        found = self.root / name
-        if not found.exists():
+        if not self.has(name, made_by):
             raise NoResults(f"Nothing is stored yet: `{made_by}` makes `results/{name}`.")
-        return found
+        return self.root / name
 
     @functools.cache
     def runs(self, name, made_by):
@@ -53,11 +60,16 @@ class Stored:
         texts = dict.fromkeys(
             f"{entry['machine']['cpu_model']}, {entry['machine']['cores']} cores, commit "
             f"{entry['build']['git_hash'][:10]}" for entry in entries)
-        return "; ".join(texts) or "machine and commit not recorded"
+        if not texts:
+            self.gaps[name] = "machine and commit not recorded"
+        return "; ".join(texts) or self.gaps[name]
 
 
-def need(rows, what):
-    """rows, where there are any."""
+def need(rows, what, *columns):
+    """rows, where there are any, and where they have these columns."""
     if not rows:
         raise ResultError(f"stored results have no rows of {what}")
+    for column in columns:
+        if column not in rows[0]:
+            raise ResultError(f"stored rows of {what} have no column {column}; scripts/reference makes them anew")
     return rows

@@ -6,13 +6,13 @@ import pathlib
 import pandas
 
 from cleave_results import ResultError, Row, load_manifest, load_steps
-from timing_table import NEEDED, READ_TOO, SAME_IN_A_SCENE, SAME_SOLVER
+from timing_table import NEEDED, READ_TOO, SAME_IN_A_SCENE, SAME_SOLVER, SAME_WORLD
 
 REQUIRED = ("scene", "step", "partitioner", "refiner", "solver", "status")
 TEXT_COLUMNS = ("run_id", "scene", "partitioner", "refiner", "solver", "strategy", "kernel", "friction",
                 "status", "status_reason", "auto_reason", "problem_hash", "solution_hash", "state_hash",
                 "problem_file")
-TABLE_COLUMNS = {*NEEDED, *SAME_IN_A_SCENE, *SAME_SOLVER, *READ_TOO}
+TABLE_COLUMNS = {*NEEDED, *SAME_IN_A_SCENE, *SAME_SOLVER, *SAME_WORLD, *READ_TOO}
 NUMBERS = ("t_", "factor", "interface_", "residual_", "part_", "rows", "bodies", "step", "seed", "threads",
            "repeat_count")  # what columns begin with that are numbers even where no value is one
 NOT_MEASURED = ("", "-", "nan", "inf", "-inf")

@@ -173,7 +173,8 @@ class LadderTest(unittest.TestCase):
 
     def test_cells_of_another_build_machine_or_of_a_dirty_one_are_run_again(self):
         self.ladder("--solver", "exact")
-        for change in ({"git_hash": "f" * 40}, {"cpu_model": "Other CPU"}, {"cores": 8}, {"git_dirty": "true"}):
+        for change in ({"git_hash": "f" * 40}, {"cpu_model": "Other CPU"}, {"cores": 8}, {"flags": "-O0"},
+                       {"build_type": "Debug"}, {"git_dirty": "true"}):
             self.calls()
             with unittest.mock.patch.dict(os.environ, STAND_IN_KEY=json.dumps(change)):
                 self.assertNotIn("kept", self.ladder("--solver", "exact").stderr)

@@ -1,8 +1,10 @@
 """scripts/two_threads, cold_starts, ablation and the benchmarks with stand-ins for the programs they run."""
 import csv
 import json
+import os
 import subprocess
 import unittest
+import unittest.mock
 
 from stand_in import StandInCase
 from synthetic import ROOT
@@ -18,8 +20,9 @@ from synthetic import COMBINATIONS, write_steps
 words = sys.argv[1:]
 with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write(" ".join(words) + "\\n")
-code = int(os.environ.get("STAND_IN_CODE", 0))
-if code and words[0] == "replay":
+code = int(os.environ.get("STAND_IN_CODE", 0))  # of the replays after the first
+replays = sum(line.startswith("replay ") for line in open(os.environ["STAND_IN_LOG"]))
+if code and words[0] == "replay" and replays > 1:
     sys.exit("cleave replay: no" if code == 1 else code)
 out = pathlib.Path(words[words.index("--out") + 1])
 out.mkdir(parents=True, exist_ok=True)
@@ -33,8 +36,9 @@ assert files and all(os.path.exists(file) for file in files), files
 threads = int(words[words.index("--threads") + 1]) if "--threads" in words else 1
 names = COMBINATIONS if "all" in words else [("mix", "fm")]
 write_steps(out, [dict(step=int(file[-9:-3]), scene="s", bodies=7, partitioner=partitioner, refiner=refiner,
-                       threads=threads, rows=1200, interface_rows=50 if "whole" in words else 40, status="ok",
-                       t_s_ms=8 / threads, factorizations=9 if "--cold" in words else 2)
+                       threads=threads, rows=1200, interface_rows=50 if "whole" in words else 40,
+                       status=os.environ.get("STAND_IN_STATUS", "ok"), t_s_ms=8 / threads, t_s_waiting_ms=0.25,
+                       factorizations=9 if "--cold" in words else 2)
                   for file in files for partitioner, refiner in names])
 """
 
@@ -49,6 +53,19 @@ class Measurement(StandInCase):
         with open(self.directory / "out" / name, newline="") as file:
             return list(csv.DictReader(file))
 
+    def check_status_refused(self):
+        """Cells that were not solved are one line, and nothing is written."""
+        with unittest.mock.patch.dict(os.environ, STAND_IN_STATUS="not_converged"):
+            said = self.run_it(code=1).stderr.splitlines()
+        self.assertRegex(said[-1], r"replayed cells are not ok, first: step \d+, mix fm: status not_converged")
+        self.assertEqual(len(said), 2, said)  # the other says how long it takes
+        self.assertEqual(list((self.directory / "out").iterdir()), [])
+
+    def check_least(self, option, least):
+        """What is less than the least number of rounds or repetitions is one line, before anything runs."""
+        self.check_refused(((option, least - 1), f"{option} is {least - 1}, expected at least {least}; see"),
+                           ((option, "x"), f"{option} is 'x', expected a whole number; see"))
+
 
 class TwoThreadsTest(Measurement):
     script = "two_threads"
@@ -59,12 +76,13 @@ class TwoThreadsTest(Measurement):
         self.assertIn("--scene large_rock_pile --at 100,200,300,400", record)
         self.assertEqual([call[call.index("--threads"):].split()[1] for call in replays], ["1", "2", "2", "1", "1", "2"])
         self.assertEqual(len(self.rows("two_threads.csv")), 4 * 2 * 3)
+        self.assertEqual({row["t_s_waiting_ms"] for row in self.rows("two_threads.csv")}, {"0.25"})
         self.assertIn("mix+fm step 300: 2.00", result.stdout)
         self.assertIn("| `mix+fm` | 2.00 | 2.00 | 2.00 | 2.00 |", speed.two_threads(self.stored()))
 
     def test_bad_input_and_failures_are_one_line(self):
-        self.assertIn("--rounds is 2, expected at least 3", self.run_it("--rounds", 2, code=1).stderr)
-        self.assertEqual(self.calls(), [])
+        self.check_least("--rounds", 3)
+        self.check_status_refused()
         self.assertIn("exit code 1: cleave replay: no", self.run_it(code=1, stand_in_code=1).stderr.splitlines()[-1])
         self.assertFalse((self.directory / "out" / "two_threads.csv").exists())
 
@@ -83,8 +101,14 @@ class BusyMachineTest(Measurement):
 
     def test_no_loop_outlives_a_failure(self):
         self.assertIn("exit code 1: cleave replay: no", self.run_it(code=1, stand_in_code=1).stderr.splitlines()[-1])
-        running = subprocess.run(["pgrep", "-f", "while True: pass"], capture_output=True, text=True, check=False)
+        self.assertEqual(len(self.calls()), 3)  # a record, a replay beside no loop, and the one beside a loop, which fails
+        running = subprocess.run(["pgrep", "-f", f"busy_loop_for_{self.directory}/out"], capture_output=True, text=True,
+                                 check=False)
         self.assertEqual(running.stdout, "")
+
+    def test_bad_input_and_cells_that_are_not_solved_are_one_line(self):
+        self.check_least("--rounds", 1)
+        self.check_status_refused()
 
 
 class DenseRatiosTest(unittest.TestCase):
@@ -113,8 +137,9 @@ class ColdStartsTest(Measurement):
         self.assertEqual({(row["factorizations_cold"], row["factorizations_warm"]) for row in rows}, {("9", "2")})
         self.assertIn("the 100 recorded steps", speed.cold_starts(self.stored()))
 
-    def test_bad_input_is_one_line(self):
+    def test_bad_input_and_cells_that_are_not_solved_are_one_line(self):
         self.assertIn("--seeds has 'x'", self.run_it("--seeds", "1,x", code=1).stderr)
+        self.check_status_refused()
 
 
 class AblationTest(Measurement):
@@ -167,7 +192,7 @@ class SolverBenchmarkTest(BenchmarkCase):
         self.assertIn("| 200 rocks, cfm 1e-5 | 1000 | 10.00 | 5 | 1.0e-12 | 2.9 | 5.00 (100) | 5.0 | 3.0 | 1.0 | 1.00 | 1.00 |",
                       result.stdout)
         self.assertEqual(self.run_it("--print-only").stdout, result.stdout)
-        self.assertEqual(self.calls(), [])
+        self.check_least("--repetitions", 1)
 
     def test_a_benchmark_that_is_not_built(self):
         self.beside.unlink()
@@ -184,7 +209,16 @@ class PartitionBenchmarkTest(BenchmarkCase):
                                         "--benchmark_out_format=json"])
         self.assertIn("benchmarks", json.loads((self.directory / "out" / "partition_benchmark.json").read_text()))
 
+    def test_bad_input_is_one_line(self):
+        self.check_least("--repetitions", 1)
+
+
+class DenseBenchmarkTest(BenchmarkCase):
+    script, program_name = "benchmark_dense", "dense_benchmark"
+
+    def test_bad_input_is_one_line(self):
+        self.check_least("--repetitions", 1)
+
 
 if __name__ == "__main__":
-    import unittest
     unittest.main()

@@ -1,13 +1,13 @@
 """scripts/readme_tables: the READMEs say what the files under results/ say."""
 import pathlib
 import re
-import shutil
 import tempfile
 import unittest
 
 import stored_data
-from synthetic import ROOT, run_script
+from synthetic import ROOT, SCRIPTS, run_script
 
+import extremes_steps
 from cleave_results import ResultError
 from documents import cuts, markers, paper_claims, paper_table, sets, speed, stability, text
 from documents.stored import NoResults, Stored
@@ -35,10 +35,36 @@ class CheckoutTest(unittest.TestCase):
         self.assertEqual(set(sets.COMMANDS.values()), commands)
         self.assertEqual(list(sets.COMMANDS), list(sets.SETS))
 
+    def test_every_file_of_the_set_is_explained(self):
+        text = (ROOT / "results" / "README.md").read_text()
+        rows = {name: line for line in text.splitlines() if line.startswith("| `")
+                for name in re.findall(r"`([^`]+)`", line.split("|")[1])}
+        for name in sets.SETS:
+            if name.startswith("ladder/"):
+                self.assertIn("\n## ladder.csv\n", text)
+            elif name.endswith((".csv", ".json")):
+                self.assertIn(name, rows)
+        for name, columns in self.columns().items():
+            self.assertEqual(columns - set(re.findall(r"`(\w+)`", rows[name])), set(), name)
+
+    def columns(self):
+        """{small CSV file: its columns} as the commands write them."""
+        written = {"extremes.csv": set(extremes_steps.WRITTEN)}
+        for command in ("two_threads", "busy_machine", "cold_starts", "ablation"):
+            listed = re.search(r"^COLUMNS = \((.*?)\)", (SCRIPTS / command).read_text(), re.M | re.S)[1]
+            written[f"{command}.csv"] = set(re.findall(r'"(\w+)"', listed))
+        with open(ROOT / "results" / "report" / "verdicts.csv", encoding="utf-8") as file:
+            written["report/verdicts.csv"] = set(file.readline().strip().split(","))
+        return written
+
     def test_no_measured_number_stands_outside_of_the_generated_parts(self):
         for name in DOCUMENTS:
             prose = re.sub(r"```.*?```", "", markers.outside((ROOT / name).read_text()), flags=re.S)
             self.assertEqual(MEASURED.findall(prose), [], name)
+
+
+# Parts that a small set of results is enough for.
+PARTS = {"README.md": ("excerpt", "table1_facts", "two_threads"), "results/table1.md": ("table1",)}
 
 
 class RewriteTest(unittest.TestCase):
@@ -49,11 +75,12 @@ class RewriteTest(unittest.TestCase):
         self.root = pathlib.Path(scratch.name)
         for name in DOCUMENTS:
             (self.root / name).parent.mkdir(exist_ok=True)
-            shutil.copy(ROOT / name, self.root / name)
-        for path in (ROOT / "results").iterdir():
-            if path.suffix != ".md" and path.name != "full":
-                (self.root / "results" / path.name).symlink_to(path)
-        shutil.copytree(ROOT / "results" / "full", self.root / "results" / "full")
+            parts = PARTS.get(name, ())
+            (self.root / name).write_text("".join(f"<!-- generated: {part} -->\n<!-- end -->\n" for part in parts))
+        stored_data.full(self.root / "results")
+        stored_data.two_threads(self.root / "results")
+        stored_data.write_provenance(self.root / "results", "full", "two_threads.csv")
+        self.run_it()
 
     def run_it(self, *arguments, code=0):
         result = run_script("readme_tables", "--root", self.root, *arguments)
@@ -84,6 +111,16 @@ class RewriteTest(unittest.TestCase):
         self.run_it()
         self.assertIn("1234.5", (self.root / "README.md").read_text())
 
+    def test_check_names_what_is_not_stored_and_what_nobody_knows_the_origin_of(self):
+        (self.root / "results" / "provenance.json").unlink()
+        self.run_it()
+        said = self.run_it("--check", code=3)
+        for name in ("full", "two_threads.csv"):
+            self.assertIn(f"results/{name}: machine and commit not recorded\n", said)
+        (self.root / "results" / "two_threads.csv").unlink()
+        self.run_it()
+        self.assertIn("results/two_threads.csv: not stored, scripts/two_threads makes it\n", self.run_it("--check", code=3))
+
     def test_bad_places_are_one_line(self):
         path = self.root / "README.md"
         right = path.read_text()
@@ -110,6 +147,35 @@ class BlocksTest(unittest.TestCase):
     def test_what_is_not_stored_says_what_makes_it(self):
         with self.assertRaisesRegex(NoResults, "`scripts/two_threads` makes `results/two_threads.csv`"):
             speed.two_threads(self.stored)
+
+    def test_sets_that_are_not_stored_or_of_unknown_origin_are_gaps(self):
+        stored_data.two_threads(self.root)
+        stored_data.cold_starts(self.root)
+        stored_data.write_provenance(self.root, "two_threads.csv")
+        stored = self.stored
+        made = sets.reference_sets(stored)
+        self.assertIn("| 1.5 min | Some CPU, 2 cores, commit 0123456789 |", made)
+        self.assertEqual(set(stored.gaps), set(sets.SETS) - {"two_threads.csv"})
+        self.assertEqual(stored.gaps["cold_starts.csv"], "machine and commit not recorded")
+
+    def test_the_excerpt_ends_with_what_was_checked(self):
+        stored_data.full(self.root)
+        made = paper_table.excerpt(self.stored)
+        self.assertIn("\n\npass  every row has status ok\npass  residual within the limit of an exact answer\n...\n"
+                      "600 rows checked\n```", made)
+        stored_data.full(self.root, "not_converged")
+        self.assertIn("\nFAIL  every row has status ok; 1 found, first: ", paper_table.excerpt(self.stored))
+
+    def test_the_model_is_held_against_what_was_measured_without_a_wait(self):
+        stored_data.full(self.root)
+        stored_data.one_thread(self.root)
+        made = speed.model(self.stored)
+        self.assertIn("| Rock Pile | 150 | 0.500 | 0.500 | 0.500 |", made)
+        self.assertIn("; 0 pairs that waited", made)
+        stored_data.one_thread(self.root, waiting_ms=0.6)  # of 10
+        made = speed.model(self.stored)
+        self.assertIn("| Rock Pile | 149 | 0.500 | 0.500 | 0.500 |", made)
+        self.assertIn("; 1 pairs that waited", made)
 
     def test_table1_facts_name_the_lowest_the_failed_and_the_stalls(self):
         stored_data.full(self.root)
@@ -155,12 +221,23 @@ class BlocksTest(unittest.TestCase):
 
     def test_the_ladder_counts_and_does_not_boast(self):
         stored_data.ladder(self.root)
-        self.assertIn("| `pgs_20` | 2 of 2 | 0 of 2 |", stability.ladder(self.stored))
+        made = stability.ladder(self.stored)
+        self.assertIn("| `pgs_20` | 2 of 2 | 1 of 1 | 1 of 1 | 0 of 2 | 0 of 1 | 0 of 1 |", made)
+        self.assertIn("| `ode-step_pyramid` | - | - | - | 2 of 2 | 1 of 1 | 0 of 1 |", made)
+        self.assertIn("Whether `ode-step_pyramid` is exact is not judged", made)
+        self.assertIn("not right on `chain_swing` at mass-ratio 100 (`step_too_long`). Where `physics` is", made)
         made = stability.ladder_full(self.stored)
-        self.assertIn("`exact` solves all 2 values", made)
+        self.assertIn("`exact` solves all 4 values", made)
         self.assertIn("within 0.0060 mm of the closed form, in which the compliance lets them sag 0.12 mm", made)
         stored_data.ladder(self.root, "not_converged")
-        self.assertIn("`exact` solves 1 of 2 values", stability.ladder_full(self.stored))
+        self.assertIn("`exact` solves 3 of 4 values", stability.ladder_full(self.stored))
+        stored_data.ladder(self.root, swing="ok")
+        self.assertIn("With `exact` the motion is right on every value.", stability.ladder(self.stored))
+
+    def test_a_ladder_without_its_set_ups_is_an_error(self):
+        stored_data.write_csv(self.root / "ladder" / "ladder.csv", [{"rung": "a", "solver": "exact", "status": "ok"}])
+        with self.assertRaisesRegex(ResultError, "no column setup"):
+            stability.ladder(self.stored)
 
     def test_the_ablation_shows_what_differs_from_the_default(self):
         stored_data.ablation(self.root)

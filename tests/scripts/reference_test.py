@@ -110,7 +110,8 @@ class ReferenceTest(unittest.TestCase):
             ("README.md", "manifest.json", "steps.csv", "provenance.json"))})
         note = notes["extremes.csv"]
         self.assertEqual(note["command"], "scripts/extremes --seeds 1 --out out/reference/extremes")
-        self.assertEqual(note["build"], {"git_hash": self.git("rev-parse", "HEAD"), "git_dirty": "false"})
+        self.assertEqual(note["build"], {"git_hash": self.git("rev-parse", "HEAD"), "git_dirty": "false",
+                                         "flags": "-O3 -march=x86-64-v3", "build_type": "RelWithDebInfo"})
         self.assertEqual(note["machine"], {"cpu_model": "Some CPU", "cores": 2})
 
     def test_what_is_done_is_kept_on_the_same_commit_and_machine_alone(self):
@@ -131,7 +132,9 @@ class ReferenceTest(unittest.TestCase):
 
     def test_local_changes_and_other_builds_are_refused(self):
         for key, words in (({"git_hash": "f" * 40}, "is a build of commit ffffffffff"),
-                           ({"git_dirty": "true"}, "local changes: true")):
+                           ({"git_dirty": "true"}, "local changes: true"),
+                           ({"flags": "-O3 -march=native"}, "build with -O3 -march=native, expected RelWithDebInfo with "
+                            "-march=x86-64-v3"), ({"build_type": "Debug"}, "is a Debug build")):
             calls, said = self.run_it(code=1, **key)
             self.assertEqual(calls, [])
             self.assertIn(words, said)

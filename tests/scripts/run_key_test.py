@@ -1,6 +1,8 @@
 """What decides that results are there already: scripts/run_key.py, seen through scripts/reproduce."""
 import json
 import os
+import pathlib
+import tempfile
 import unittest
 import unittest.mock
 
@@ -11,7 +13,8 @@ from synthetic import ROOT, run_script
 import run_key
 from cleave_results import ResultError
 
-KEY = {"run_id": "1", "threads": 2, "git_hash": "a" * 40, "git_dirty": "false", "cpu_model": "C", "cores": 2}
+KEY = {"run_id": "1", "threads": 2, "git_hash": "a" * 40, "git_dirty": "false", "flags": "-O3", "build_type": "Release",
+       "cpu_model": "C", "cores": 2}
 
 
 class DifferenceTest(unittest.TestCase):
@@ -20,6 +23,8 @@ class DifferenceTest(unittest.TestCase):
         self.assertIsNone(run_key.difference(KEY, KEY))
         for name, value, words in (("run_id", "2", "another experiment: run_id 1, wanted 2"),
                                    ("threads", 1, "threads 2, wanted 1"), ("git_hash", "b" * 40, "commit aaaaaaaaaa"),
+                                   ("flags", "-O2", "built otherwise: flags -O3, here -O2"),
+                                   ("build_type", "Debug", "built otherwise: build_type Release, here Debug"),
                                    ("cpu_model", "D", "another machine: cpu_model C, here D"),
                                    ("cores", 4, "another machine: cores 2, here 4")):
             self.assertIn(words, run_key.difference(KEY, KEY | {name: value}), name)
@@ -37,6 +42,14 @@ class DifferenceTest(unittest.TestCase):
         with self.assertRaisesRegex(ResultError, "exit code 1"):
             run_key.program_key("/bin/false", ("run",))
 
+    def test_a_program_that_does_not_say_how_it_was_built(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            program = pathlib.Path(scratch) / "cleave"
+            program.write_text(f"#!/bin/sh\necho '{json.dumps({name: value for name, value in KEY.items() if name != 'flags'})}'\n")
+            program.chmod(0o755)
+            with self.assertRaisesRegex(ResultError, "does not say flags"):
+                run_key.program_key(program, ("run",))
+
 
 class KeepTest(StandInCase):
     script, stand_in = "reproduce", STAND_IN
@@ -53,12 +66,25 @@ class KeepTest(StandInCase):
         for change, words in (({"git_hash": "f" * 40}, "made by commit 0123456789, this is ffffffffff"),
                               ({"cpu_model": "Other CPU"}, "another machine: cpu_model Some CPU, here Other CPU"),
                               ({"cores": 8}, "another machine: cores 2, here 8"),
+                              ({"flags": "-O0"}, "built otherwise: flags -O3 -march=x86-64-v3, here -O0"),
+                              ({"build_type": "Debug"}, "built otherwise: build_type RelWithDebInfo, here Debug"),
                               ({"names": "mindp mix karger"}, "another experiment: run_id")):
             with self.subTest(change):
                 runs, said = self.reproduce(**change)
                 self.assertEqual(runs, 1)
                 self.assertIn(words, said)
                 self.reproduce()
+
+    def test_another_command_is_refused_on_the_same_build_and_machine_alone(self):
+        """Exit code of is_complete for other arguments than those that the results were made by."""
+        self.reproduce()
+        for change, code, words in (({}, 3, "holds the results of: run --scene rock_pile"),
+                                    ({"git_hash": "f" * 40}, 1, "this is ffffffffff"),
+                                    ({"flags": "-O0"}, 1, "flags"), ({"cores": 8}, 1, "another machine")):
+            with unittest.mock.patch.dict(os.environ, STAND_IN_KEY=json.dumps(change)):
+                done = run_script("is_complete", self.program, self.directory / "out" / "rock_pile", "run", "--steps", 7)
+            self.assertEqual(done.returncode, code, done.stdout)
+            self.assertIn(words, done.stdout)
 
     def test_results_of_a_dirty_build_are_never_kept(self):
         for _ in range(2):

@@ -44,11 +44,15 @@ def extremes(root, spoiled=None):
     write_csv(root / "extremes.csv", rows)
 
 
-def ladder(root, heavy_status="ok"):
-    rows = [{"rung": "heavy_top", "value": value, "solver": solver, "steps": 600, "height_error_m": 6e-6,
-             "sag_m": 1.2e-4, "status": heavy_status if value == "1e6" else "ok",
-             "physics": "height" if solver == "pgs_20" else "ok"}
-            for value in ("1", "1e6") for solver in ("exact", "pgs_20")]
+LADDER = (("heavy_top", "on_axis", "1"), ("heavy_top", "on_axis", "1e6"), ("heavy_top_off_axis", "off_axis", "1"),
+          ("chain_swing", "-", "100"))
+
+
+def ladder(root, heavy_status="ok", swing="step_too_long"):
+    rows = [{"rung": rung, "setup": setup, "parameter": "mass-ratio", "value": value, "solver": solver, "steps": 600,
+             "height_error_m": 6e-6, "sag_m": 1.2e-4, "status": heavy_status if value == "1e6" else "ok",
+             "physics": "height" if solver == "pgs_20" else swing if rung == "chain_swing" else "ok"}
+            for rung, setup, value in LADDER for solver in ("exact", "pgs_20", "ode-step_pyramid")]
     write_csv(root / "ladder" / "ladder.csv", rows)
     write_csv(root / "ladder" / "ladder_full_exact.csv", [row for row in rows if row["solver"] == "exact"])
 
@@ -68,16 +72,31 @@ def partition_benchmark(root):
     (root / "partition_benchmark.json").write_text(json.dumps({"benchmarks": entries}))
 
 
+def _full_rows(scene):
+    rows = [row | {"fallbacks": int(scene == "rock_pile" and row["step"] % 100 == 0),
+                   "problem_hash": f"{scene} {row['step']}"} for row in matrix(scene)]
+    for row in rows:
+        if (row["partitioner"], row["refiner"]) == ("bfs", "fm"):
+            row["t_s_ms"] = 1
+    return rows
+
+
 def full(root, spoiled=None):
     """bfs+fm is made the fastest of every scene; every other step of rock_pile falls back."""
     for scene in SCENES:
-        rows = [row | {"fallbacks": int(scene == "rock_pile" and row["step"] % 100 == 0)} for row in matrix(scene)]
-        for row in rows:
-            if (row["partitioner"], row["refiner"]) == ("bfs", "fm"):
-                row["t_s_ms"] = 1
+        rows = _full_rows(scene)
         if spoiled and scene == "rock_pile":
             rows[0]["status"] = spoiled
         write_steps(root / "full" / scene, rows)
+
+
+def one_thread(root, waiting_ms=0.01):
+    """Half of what `full` measured is modelled; the solves of the first row of rock_pile may wait for a core."""
+    for scene in SCENES:
+        rows = [row | {"threads": 1, "t_s_model_p2_ms": row["t_s_ms"] / 2} for row in _full_rows(scene)]
+        if scene == "rock_pile":
+            rows[0]["t_s_waiting_ms"] = waiting_ms
+        write_steps(root / "report" / "one_thread" / scene, rows)
 
 
 def solver_runs(root):

@@ -181,11 +181,18 @@ class ComparisonTest(Table1Test):
         self.assertNotIn("not the paper's run", self.table())
 
     def test_rows_of_other_parameters_are_not_averaged(self):
-        for column, one, other in (("cfm", "1e-05", "1e-06"), ("contact_cap", 8, 4), ("max_iterations", 9, 100)):
+        for column, one, other in (("cfm", "1e-05", "1e-06"), ("contact_cap", 8, 4), ("max_iterations", 9, 100),
+                                   ("scene_options", "bodies=200", "bodies=300"), ("mode", "lockstep", "separate"),
+                                   ("advance", "exact", "pgs"), ("steps", 500, 60)):
             rows = [row | {column: one} for row in matrix("rock_pile", [0])]
             rows += [row | {column: other} for row in matrix("rock_pile", [50])]
             write_steps(self.directory, rows)
             self.assertIn(f"mix {column} ", self.table(code=1))
+
+    def test_rows_that_do_not_say_a_parameter_are_not_averaged_with_those_that_do(self):
+        write_steps(self.directory / "a", matrix("rock_pile", [0]))
+        write_steps(self.directory / "b", [row | {"advance": "exact"} for row in matrix("rock_pile", [50])])
+        self.assertIn("mix advance exact, unknown; choose one with --where advance=exact", self.table(code=1))
 
     def test_cells_whose_solves_waited_for_a_core_are_marked(self):
         rows = matrix("rock_pile", [0, 50])

@@ -24,13 +24,13 @@ class ValidateModelTest(unittest.TestCase):
         self.addCleanup(self.scratch.cleanup)
         self.directory = pathlib.Path(self.scratch.name)
 
-    def validate(self, one, two, code=0):
+    def validate(self, one, two, *options, code=0):
         write_steps(self.directory / "one", one)
         write_steps(self.directory / "two", two)
-        result = run_script("validate_model", self.directory / "one", self.directory / "two")
+        result = run_script("validate_model", self.directory / "one", self.directory / "two", *options)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         self.assertNotIn("Traceback", result.stderr)
-        return result.stdout if code == 0 else result.stderr
+        return result.stderr if code == 1 else result.stdout
 
     def test_median_and_quartiles_of_known_ratios(self):
         steps = (0, 1, 2, 3, 4)
@@ -50,6 +50,28 @@ class ValidateModelTest(unittest.TestCase):
         self.assertRegex(text, r"(?m)^mindp none schur +1 +1\.000 +1\.000 +1\.000$")
         self.assertRegex(text, r"(?m)^mix fm schur +2 ")
         self.assertIn("5 rows without a partner", text)
+
+    def test_the_median_has_to_lie_within_the_limit(self):
+        one, two = rows_of(1, (0, 1, 2), t_s_model_p2_ms=6), rows_of(2, (0, 1, 2), t_s_ms=8)
+        for limit, code, word in (("0.7,0.8", 0, "pass"), ("0.75,0.75", 0, "pass"), ("0.8,1.2", 3, "FAIL"),
+                                  ("0,0.7", 3, "FAIL")):
+            self.assertIn(f"\n{word}  median 0.750, limits ", self.validate(one, two, "--limit", limit, code=code))
+        for wrong in ("1", "a,b", "2,1", "0,nan", "1,2,3"):
+            self.assertIn(f"--limit is '{wrong}', expected LOW,HIGH", self.validate(one, two, "--limit", wrong, code=1))
+
+    def test_pairs_that_waited_for_a_core_are_left_out_and_counted(self):
+        one, two = rows_of(1, (0, 1, 2), t_s_model_p2_ms=6, t_s_ms=10), rows_of(2, (0, 1, 2), t_s_ms=8)
+        one[0].update(t_s_waiting_ms=0.6)  # mindp none of step 0
+        two[2].update(t_s_waiting_ms=0.5, t_s_ms=1)  # mindp none of step 1
+        two[4].update(t_s_waiting_ms="nan")  # nobody knows
+        two[5].update(t_s_waiting_ms=0.3)  # less than 5 %
+        text = self.validate(one, two)
+        self.assertRegex(text, r"(?m)^mindp none schur +1 +0\.750")
+        self.assertRegex(text, r"(?m)^mix fm schur +3 +0\.750")
+        self.assertIn("\n0 rows without a partner left out\n2 pairs that waited more than 5 % of t_s", text)
+        for row in two:
+            row.update(t_s_waiting_ms=4)
+        self.assertIn("all 6 pairs waited for a core", self.validate(one, two, code=1))
 
     def test_without_pairs_it_fails_loudly(self):
         error = self.validate(rows_of(1, (0,), t_s_model_p2_ms=6), rows_of(2, (1,)), code=1)
