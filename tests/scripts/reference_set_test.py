@@ -1,0 +1,60 @@
+"""What is stored under results/ was made by one clean commit of the history, and says so."""
+import json
+import subprocess
+import unittest
+
+from synthetic import ROOT
+
+RESULTS = ROOT / "results"
+
+
+def manifests():
+    return sorted(RESULTS.rglob("manifest.json"))
+
+
+def provenance():
+    return json.loads((RESULTS / "provenance.json").read_text())["files"]
+
+
+class ReferenceSetTest(unittest.TestCase):
+
+    def entries(self):
+        """(name, what says how it was made)"""
+        return [(str(path.relative_to(RESULTS)), json.loads(path.read_text())) for path in manifests()
+               ] + list(provenance().items())
+
+    def test_all_of_it_names_one_clean_commit_that_is_in_the_history(self):
+        self.assertGreater(len(manifests()), 0)
+        commits = {}
+        for name, entry in self.entries():
+            self.assertEqual(entry["build"]["git_dirty"], "false", name)
+            commits.setdefault(entry["build"]["git_hash"], []).append(name)
+        self.assertEqual(len(commits), 1, {commit: names[:3] for commit, names in commits.items()})
+        commit, = commits
+        done = subprocess.run(["git", "-C", ROOT, "merge-base", "--is-ancestor", commit, "HEAD"],
+                              capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, f"{commit} is not in the history: {done.stderr}")
+
+    def test_all_of_it_was_made_on_one_machine(self):
+        machines = {(entry["machine"]["cpu_model"], entry["machine"]["cores"]) for _, entry in self.entries()}
+        self.assertEqual(len(machines), 1, machines)
+
+    def test_every_file_has_a_manifest_or_stands_in_provenance(self):
+        described = set(provenance())
+        for path in RESULTS.rglob("*"):
+            name = str(path.relative_to(RESULTS))
+            if path.is_file() and path.suffix != ".md" and name != "provenance.json" and path.name != "manifest.json":
+                beside = path.name == "steps.csv" and (path.parent / "manifest.json").exists()
+                self.assertTrue(beside or name in described, f"results/{name}: neither a manifest nor provenance")
+        for name in described:
+            self.assertTrue((RESULTS / name).exists(), f"results/provenance.json names {name}, which is not there")
+
+    def test_every_run_is_complete_and_knows_no_path_of_the_machine(self):
+        for path in manifests():
+            manifest = json.loads(path.read_text())
+            self.assertEqual(manifest["state"], "complete", path)
+            self.assertFalse([word for word in manifest["argv"] if word.startswith("/")], path)
+
+
+if __name__ == "__main__":
+    unittest.main()
