@@ -8,8 +8,7 @@ namespace {
 
 [[gnu::constructor(101)]] void require_cpu() {
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2"))
-    return;
+  if (__builtin_cpu_supports("x86-64-v3")) return;
   const char* text =
       "cleave: this processor has no AVX2 and FMA instructions (x86-64-v3), which this program is built "
       "for\n";

@@ -1,11 +1,14 @@
 #include "solver/worker_team.h"
 
 #include <immintrin.h>
+#include <omp.h>
 #include <sys/resource.h>
 
 #include <chrono>
 #include <map>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace cleave {
@@ -68,17 +71,35 @@ void raise(std::atomic<int>& counter) {
 
 WorkerTeam::WorkerTeam(int threads) : threads_(threads) {
   if (threads == 1) return;
+  // The first member of the region has the place of the caller and only waits for the others.
   workers_ = std::thread([this] {
-#pragma omp parallel num_threads(threads_ - 1)
-    work();
+#pragma omp parallel num_threads(threads_)
+    {
+      if (omp_get_thread_num() == 0) {
+        granted_ = omp_get_num_threads();
+        granted_.notify_all();
+      } else {
+        work();
+      }
+    }
   });
+  granted_.wait(0);
+  if (granted_ == threads_) return;
+  dismiss();
+  throw std::runtime_error("OpenMP grants " + std::to_string(granted_) + " of " + std::to_string(threads_) +
+                           " threads; OMP_THREAD_LIMIT and OMP_DYNAMIC bound them");
 }
 
 WorkerTeam::~WorkerTeam() {
-  if (threads_ == 1) return;
+  if (threads_ > 1) dismiss();
+}
+
+void WorkerTeam::dismiss() {
   stop_ = true;
   open_.fetch_add(kTasks + 1);  // a stage without tasks, so that sleepers see a change
   open_.notify_all();
+  // OpenMP ends the program from that thread where the system makes no more.
+  if (workers_.get_id() == std::this_thread::get_id()) return workers_.detach();
   workers_.join();
 }
 

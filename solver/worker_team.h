@@ -17,7 +17,8 @@ namespace cleave {
 
 class WorkerTeam {
  public:
-  explicit WorkerTeam(int threads);  // >= 1; the caller of run() is one of them
+  // >= 1; the caller of run() is one of them. Throws std::runtime_error where OpenMP grants fewer.
+  explicit WorkerTeam(int threads);
   ~WorkerTeam();
   WorkerTeam(const WorkerTeam&) = delete;
   WorkerTeam& operator=(const WorkerTeam&) = delete;
@@ -28,14 +29,15 @@ class WorkerTeam {
   using Task = void (*)(void* context, int index);
 
   // Calls task(context, i) for i = 0..count-1 and returns when all have returned. They are started in
-  // ascending order, so a task may wait for an earlier one that does not throw. The first exception of a task
-  // is thrown here, once no task is running; tasks not started by then are left out. Not to be called from
-  // within a task.
+  // ascending order, so a task may wait for an earlier one where no task of the stage throws. The first
+  // exception of a task is thrown here, once no task is running; tasks not started by then are left out. Not
+  // to be called from within a task.
   void run(int count, Task task, void* context);
 
   int threads() const { return threads_; }
 
  private:
+  void dismiss();
   bool take_one();
   void work();
   void finish_one();
@@ -53,6 +55,7 @@ class WorkerTeam {
   std::atomic<std::uint64_t> open_{0};
   std::atomic<int> unfinished_{0};
   std::atomic<bool> stop_{false};
+  std::atomic<int> granted_{0};  // threads of the region, once it has begun
   std::thread workers_;
 };
 

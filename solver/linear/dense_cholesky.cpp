@@ -55,8 +55,10 @@ void DenseCholesky::resize(int size) {
   panels_ = (size + kPanelRows - 1) / kPanelRows;
   blocks_ = (panels_ + kBlockPanels - 1) / kBlockPanels;
   if (offset(panels_) > capacity_) {
+    capacity_ = 0;  // until there is memory: a solver that found none may be asked again
+    entries_.reset();
+    entries_.reset(new (std::align_val_t(64)) double[offset(panels_)]);
     capacity_ = offset(panels_);
-    entries_.reset(new (std::align_val_t(64)) double[capacity_]);
   }
 }
 
@@ -118,7 +120,7 @@ void DenseCholesky::update(int step, int row, int column) {
 // it, last in the step, are reached.
 void DenseCholesky::list_operations() {
   if (listed_blocks_ == blocks_) return;
-  listed_blocks_ = blocks_;
+  listed_blocks_ = -1;
   operations_.clear();
   for (int step = -1; step < blocks_ - 1; ++step) {
     const int next = step + 1;
@@ -132,9 +134,11 @@ void DenseCholesky::list_operations() {
   }
   const int triangle = blocks_ * (blocks_ + 1) / 2;
   if (triangle > done_capacity_) {
-    done_capacity_ = triangle;
+    done_capacity_ = 0;
     done_ = std::make_unique<std::atomic<int>[]>(triangle);
+    done_capacity_ = triangle;
   }
+  listed_blocks_ = blocks_;
 }
 
 // On several threads: the operations in the order of the list, each when what it needs is there. A block of

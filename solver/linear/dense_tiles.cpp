@@ -1,6 +1,7 @@
 #include "solver/linear/dense_tiles.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace cleave {
 
@@ -14,7 +15,7 @@ constexpr const DenseTiles* kAll[] = {&kDenseTilesAvx512, &kDenseTilesAvx2};
 
 std::span<const DenseTiles* const> all_dense_tiles() { return kAll; }
 
-const DenseTiles* chosen_dense_tiles =
-    *std::ranges::find_if(kAll, [](const DenseTiles* tiles) { return tiles->is_supported(); });
+const DenseTiles* chosen_dense_tiles = *std::ranges::find_if(
+    kAll, [](const DenseTiles* tiles) { return tiles == std::end(kAll)[-1] || tiles->is_supported(); });
 
 }  // namespace cleave

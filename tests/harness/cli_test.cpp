@@ -243,6 +243,15 @@ TEST(Options, EveryGivenValueArrives) {
 }
 
 // Two rows that differ in a cell differ in a column that says why.
+TEST(Options, ThreadsThatOpenMPDoesNotGrantAreRefused) {
+  const TemporaryDirectory directory;
+  const ProgramResult result = run_program(
+      "/usr/bin/env", {"OMP_THREAD_LIMIT=1", CLEAVE_PROGRAM, "run", "--scene", "rock_pile", "--bodies", "2",
+                       "--steps", "1", "--threads", "2", "--out", directory / "out"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("grants 1 of 2 threads"), std::string::npos) << result.err;
+}
+
 TEST(Options, EveryOptionThatCanChangeACellHasAColumn) {
   const std::map<std::string, std::string> renamed = {
       {"dt", "dt_s"}, {"gravity", "gravity_m_per_s2"}, {"repeats", "repeat_count"}};

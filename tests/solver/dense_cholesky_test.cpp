@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <new>
 #include <vector>
 
 #include "solver/linear/dense_panel.h"
@@ -109,6 +110,21 @@ TEST(DenseCholeskyTest, RefusesWhatIsNotPositive) {
       }
     }
   }
+}
+
+// A solver that found no memory is asked again.
+TEST(DenseCholeskyTest, IsUsableAfterASizeThatHasNoMemory) {
+  StageClock clock;
+  ParallelTasks tasks(clock, 2);
+  DenseCholesky cholesky;
+  fill(cholesky, random_positive(300, 1));
+  EXPECT_THROW(cholesky.resize(4'000'000), std::bad_alloc);
+  const Eigen::MatrixXd a = random_positive(300, 2);
+  fill(cholesky, a);
+  ASSERT_TRUE(cholesky.factor(tasks));
+  std::vector<double> x = right_hand_side(300);
+  cholesky.solve(x);
+  EXPECT_TRUE(same_bytes(x, solved(a, 1)));
 }
 
 TEST(DenseCholeskyTest, NothingHasNoRows) { EXPECT_TRUE(solved(Eigen::MatrixXd(0, 0), 2).empty()); }
