@@ -4,9 +4,13 @@
 #include <omp.h>
 #include <sys/resource.h>
 
+#include <charconv>
 #include <chrono>
+#include <cstdlib>
+#include <cstring>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -17,10 +21,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // How long a thread looks out before it sleeps. Waking one takes some ten microseconds, so gaps shorter than
-// that are best spent awake. On an idle machine longer ones too: 50 us cost 6 % of a solve of Large Rock Pile
-// against looking out without end, two milliseconds nothing. On a busy machine that time is taken from the
-// thread's own share of its core: with one busy loop beside two threads a solve then takes 3 times as long,
-// with 50 us 1.5 times.
+// that are best spent awake; on an idle machine longer ones too, because every stage of a solve begins with a
+// wake-up otherwise. On a busy machine a long look-out is taken from the thread's own share of its core,
+// which it then lacks when there is work.
 constexpr std::chrono::microseconds kLookOut{50}, kLongLookOut{2000};
 // A thread that was pushed off its core within this time takes the machine for busy.
 constexpr std::chrono::milliseconds kBusyFor{100};
@@ -48,9 +51,27 @@ bool was_pushed_off_lately() {
   return now < busy_until;
 }
 
+// CLEAVE_LOOK_OUT_US in the environment: so many microseconds, whatever the machine does. Throws
+// std::invalid_argument where it is no number.
+const std::optional<Clock::duration>& asked_look_out() {
+  static const std::optional<Clock::duration> asked = []() -> std::optional<Clock::duration> {
+    const char* text = std::getenv("CLEAVE_LOOK_OUT_US");
+    if (text == nullptr) return std::nullopt;
+    int microseconds = -1;
+    const char* end = text + std::strlen(text);
+    const auto [last, error] = std::from_chars(text, end, microseconds);
+    if (error != std::errc{} || last != end || microseconds < 0)
+      throw std::invalid_argument("CLEAVE_LOOK_OUT_US: '" + std::string(text) +
+                                  "' is not a whole number of microseconds in [0, 2147483647]");
+    return std::chrono::microseconds(microseconds);
+  }();
+  return asked;
+}
+
 // Whether `done` came true before it was time to sleep.
 template <class Condition>
 bool look_out(Condition done) {
+  if (asked_look_out()) return look_out_for(*asked_look_out(), done);
   return look_out_for(kLookOut, done) || (!was_pushed_off_lately() && look_out_for(kLongLookOut, done));
 }
 
@@ -71,6 +92,7 @@ void raise(std::atomic<int>& counter) {
 
 WorkerTeam::WorkerTeam(int threads) : threads_(threads) {
   if (threads == 1) return;
+  asked_look_out();  // its error belongs to the caller
   // The first member of the region has the place of the caller and only waits for the others.
   workers_ = std::thread([this] {
 #pragma omp parallel num_threads(threads_)

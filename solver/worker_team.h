@@ -3,8 +3,9 @@
 // A stage is over when its tasks are, not when every thread has come by: a thread that the machine holds
 // back, because its core is busy with something else, costs nothing unless it holds a task. (The barrier at
 // the end of an OpenMP loop waits for every thread, spinning. One busy loop of another login made a solve on
-// two threads 17 times slower that way.) Threads without work look for it for a moment and then sleep. OpenMP
-// makes the threads, so its settings apply to them: OMP_PLACES, OMP_PROC_BIND, OMP_STACKSIZE.
+// two threads 17 times slower that way.) Threads without work look for it for a moment and then sleep; for
+// how long can be set by CLEAVE_LOOK_OUT_US in the environment, where a machine is known to be one's own.
+// OpenMP makes the threads, so its settings apply to them: OMP_PLACES, OMP_PROC_BIND, OMP_STACKSIZE.
 #pragma once
 
 #include <atomic>

@@ -252,6 +252,16 @@ TEST(Options, ThreadsThatOpenMPDoesNotGrantAreRefused) {
   EXPECT_NE(result.err.find("grants 1 of 2 threads"), std::string::npos) << result.err;
 }
 
+TEST(Options, ALookOutThatIsNoNumberIsRefused) {
+  const TemporaryDirectory directory;
+  const ProgramResult result = run_program(
+      "/usr/bin/env", {"CLEAVE_LOOK_OUT_US=soon", CLEAVE_PROGRAM, "run", "--scene", "rock_pile", "--bodies",
+                       "2", "--steps", "1", "--threads", "2", "--out", directory / "out"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("CLEAVE_LOOK_OUT_US: 'soon' is not a whole number"), std::string::npos)
+      << result.err;
+}
+
 TEST(Options, EveryOptionThatCanChangeACellHasAColumn) {
   const std::map<std::string, std::string> renamed = {
       {"dt", "dt_s"}, {"gravity", "gravity_m_per_s2"}, {"repeats", "repeat_count"}};

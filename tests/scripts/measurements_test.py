@@ -111,6 +111,19 @@ class BusyMachineTest(Measurement):
         self.check_status_refused()
 
 
+class IdleCostTest(Measurement):
+    script = "idle_cost"
+
+    def test_both_are_measured_in_turn_on_both_scenes(self):
+        result = self.run_it("--rounds", 2)
+        self.assertEqual(sum(call.startswith("replay") for call in self.calls()), 2 * 2 * 2)
+        self.assertIn("large_rock_pile: 1.000 of the time", result.stdout)
+        self.assertIn("chain_drop: 1.000 of the time", result.stdout)
+
+    def test_bad_input_is_one_line(self):
+        self.assertIn("--rounds is 0, expected at least 1", self.run_it("--rounds", 0, code=1).stderr)
+
+
 class DenseRatiosTest(unittest.TestCase):
 
     def entries(self):
