@@ -5,7 +5,7 @@
 
 #include "harness/stopwatch.h"
 #include "solver/linear/dense_cholesky.h"
-#include "solver/linear/dense_panel.h"
+#include "solver/linear/dense_tiles.h"
 
 namespace cleave {
 namespace {
@@ -16,13 +16,8 @@ constexpr int kTries = 3;
 // Far from singular.
 void fill(DenseCholesky& cholesky) {
   cholesky.resize(kRows);
-  for (int p = 0; p < cholesky.panel_count(); ++p) {
-    double* entries = cholesky.begin_panel(p);
-    for (int row = kPanelRows * p; row < std::min(kRows, kPanelRows * (p + 1)); ++row)
-      for (int column = 0; column <= row; ++column)
-        entries[(row - kPanelRows * p) + kPanelRows * column] =
-            row == column ? kRows : 1.0 / (1 + row - column);
-  }
+  const auto entry = [](int row, int column) { return row == column ? kRows : 1.0 / (1 + row - column); };
+  for (int p = 0; p < cholesky.panel_count(); ++p) cholesky.fill_panel(p, entry);
 }
 
 }  // namespace

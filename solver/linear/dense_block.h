@@ -2,7 +2,8 @@
 //
 // All matrices are column-major; `ld` is the distance between columns. Row counts are even (bodies have six
 // rows, right-hand sides are padded to an even number). Products run in register tiles (dense_tiles.h); the
-// order of additions is fixed and every multiply-add is fused, so all instruction sets give the same bytes.
+// order of additions is fixed and which multiply-adds are fused is written out, so all instruction sets give
+// the same bytes.
 #pragma once
 
 #include "solver/linear/dense_tiles.h"

@@ -8,10 +8,10 @@
 //     solves the blocks below it            L_ik = A_ik L_kk^-T
 //     updates what is right of it           A_ij -= L_ik L_jk^T,    k < j <= i
 //
-// (right-looking; Golub and Van Loan, Matrix Computations, section 4.2). On several threads the first column
-// of blocks that a step updates is factored and solved while the others are still being updated
-// (look-ahead; Strazdins 1998). Every block sees the same operations in the same order on any number of
-// threads. The inverse of each 8x8 diagonal block of L is stored in the place of the block.
+// (right-looking; Golub and Van Loan, Matrix Computations, section 4.2). On several threads the diagonal
+// block that the next step begins with is factored while the others are still being updated (look-ahead;
+// Strazdins 1998). Every block sees the same operations in the same order on any number of threads. The
+// inverse of each 8x8 diagonal block of L is stored in the place of the block.
 #pragma once
 
 #include <atomic>
@@ -21,6 +21,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/linear/panel_layout.h"
 #include "solver/parallel_tasks.h"
 
 namespace cleave {
@@ -36,6 +37,18 @@ class DenseCholesky {
   // matrix is at (r - 24 p) + 24 c, c <= r. Panels may be filled by different threads.
   double* begin_panel(int p);
 
+  // The same, and fills it with entry(row, column) of the matrix.
+  template <class Entry>
+  void fill_panel(int p, const Entry& entry) {
+    double* entries = begin_panel(p);
+    const int first = kPanelRows * p, end = size_ < first + kPanelRows ? size_ : first + kPanelRows;
+    for (int row = first; row < end; ++row) {
+      for (int column = 0; column <= row; ++column) {
+        entries[row - first + static_cast<std::ptrdiff_t>(kPanelRows) * column] = entry(row, column);
+      }
+    }
+  }
+
   bool factor(ParallelTasks& tasks);  // false when a pivot is not positive
   void solve(std::span<double> x);    // x (size) <- A^-1 x
 
@@ -47,7 +60,7 @@ class DenseCholesky {
     void operator()(double* p) const { ::operator delete[](p, std::align_val_t(64)); }
   };
   double* panel(int p) const { return entries_.get() + offset(p); }
-  static std::size_t offset(int p) { return std::size_t{288} * p * (p + 1); }
+  static std::size_t offset(int p) { return std::size_t{kPanelRows * kPanelRows / 2} * p * (p + 1); }
 
   // What a step does to one block. A diagonal block is factored, those below it are solved for, all others
   // are updated.

@@ -6,11 +6,9 @@
 #pragma once
 
 #include "solver/linear/dense_tiles.h"
+#include "solver/linear/panel_layout.h"
 
 namespace cleave {
-
-inline constexpr int kPanelRows = 24;
-inline constexpr int kPanelColumns = 8;
 
 // C (24, 8) -= A (24, depth) B (8, depth)^T; a, c: in row panels, b: a group of eight rows of a row panel.
 inline void subtract_panel_product(int depth, const double* a, const double* b, double* c) {

@@ -13,6 +13,9 @@ constexpr const DenseTiles* kAll[] = {&kDenseTilesAvx512, &kDenseTilesAvx2};
 
 }  // namespace
 
+bool processor_has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
+bool processor_has_avx512() { return __builtin_cpu_supports("avx512f"); }
+
 std::span<const DenseTiles* const> all_dense_tiles() { return kAll; }
 
 const DenseTiles* chosen_dense_tiles = *std::ranges::find_if(

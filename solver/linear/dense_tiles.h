@@ -3,8 +3,8 @@
 // processor has is chosen once, when the program starts. Both give the same bytes (see block_tiles.h and
 // panel_tiles.h).
 //
-// Adding an instruction set: a file dense_tiles_NAME.cpp, its compile option in CMakeLists.txt, and a row in
-// dense_tiles.cpp.
+// Adding an instruction set: a file dense_tiles_NAME.cpp, its compile option in CMakeLists.txt, and a
+// question and a row in dense_tiles.cpp.
 #pragma once
 
 #include <span>
@@ -26,6 +26,10 @@ struct DenseTiles {
   void (*subtract_panel_vector)(int columns, const double* panel, const double* x, double* y);
   void (*subtract_panel_transpose)(int columns, const double* panel, const double* y, double* x);
 };
+
+// Asked here, in code for any processor, and not where the tiles are compiled.
+bool processor_has_avx2();
+bool processor_has_avx512();
 
 // All that were compiled, the widest first; the last is supported everywhere.
 std::span<const DenseTiles* const> all_dense_tiles();

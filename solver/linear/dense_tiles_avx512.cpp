@@ -1,20 +1,8 @@
 // The tiles of dense algebra for AVX-512.
-#include "solver/linear/block_tiles.h"
-#include "solver/linear/dense_tiles.h"
-#include "solver/linear/panel_tiles.h"
+#include "solver/linear/dense_tiles_table.h"
 
 namespace cleave {
 
-extern const DenseTiles kDenseTilesAvx512 = {
-    "AVX-512",
-    [] { return __builtin_cpu_supports("avx512f") != 0; },
-    subtract_product_tiled,
-    multiply_by_transpose_tiled,
-    weighted_gram_tiled,
-    subtract_panel_product_tiled,
-    multiply_panel_by_transpose_tiled,
-    subtract_panel_vector_tiled,
-    subtract_panel_transpose_tiled,
-};
+extern constinit const DenseTiles kDenseTilesAvx512 = tiles_of("AVX-512", processor_has_avx512);
 
 }  // namespace cleave

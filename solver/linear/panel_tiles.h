@@ -5,7 +5,7 @@
 // in the same order: the bytes are equal.
 #pragma once
 
-#include "solver/linear/dense_panel.h"
+#include "solver/linear/panel_layout.h"
 #include "solver/linear/vector_lanes.h"
 
 namespace cleave {

@@ -36,7 +36,10 @@ TEST(AllocationCountTest, IsSwitchedOff) {
   EXPECT_EQ(allocations.count(), 0);
 }
 
-class AllocationTest : public testing::TestWithParam<std::string> {};
+class AllocationTest : public testing::TestWithParam<std::string> {
+ protected:
+  void second_solve_allocates_nothing(const StepProblem& problem, int threads);
+};
 
 // Every strategy on every kernel but the oracle, whose matrices are Eigen's.
 std::vector<std::string> solver_names() {
@@ -50,31 +53,35 @@ std::vector<std::string> solver_names() {
   return names;
 }
 
-// Both problems go through one solver object each: the structure is new to it once.
+void AllocationTest::second_solve_allocates_nothing(const StepProblem& problem, int threads) {
+  const std::vector<int> parts = sliced_parts(problem.body_count(), 4);
+  SolveOptions options;
+  options.threads = threads;
+  options.reuse_analysis = true;
+  const auto solver = make_step_solver(GetParam(), options);
+  Solution first = cold_start(problem);
+  ASSERT_TRUE(is_exact(problem, solver->solve(problem, parts, first), first));
+
+  Solution second = first;
+  std::fill(second.impulse.begin(), second.impulse.end(), 0);
+  SolveSummary summary;
+  long count = -1;
+  {
+    const AllocationCount allocations;
+    summary = solver->solve(problem, parts, second);
+    count = allocations.count();
+  }
+  EXPECT_EQ(count, 0) << problem.row_count() << " rows, " << threads << " threads";
+  EXPECT_TRUE(is_exact(problem, summary, second));
+}
+
+// The structure is new to a solver once; on two threads the interface is factored with look-ahead.
 TEST_P(AllocationTest, SecondSolveOfOneStructureAllocatesNothing) {
   // Soft enough for those that may miss: why a solve failed is a text, and that is allocated.
   const double cfm = may_miss(GetParam()) ? 1e-1 : 1e-5;
-  const StepProblem pile = make_pile(5, {.columns = 3, .rows = 3, .layers = 3, .cfm = cfm});
-  const StepProblem chain = make_chain(5, {.links = 30, .extra_joints = 5, .closed = true});
-  for (const StepProblem& problem : {pile, chain}) {
-    const std::vector<int> parts = sliced_parts(problem.body_count(), 4);
-    SolveOptions options;
-    options.reuse_analysis = true;
-    const auto solver = make_step_solver(GetParam(), options);
-    Solution first = cold_start(problem);
-    ASSERT_TRUE(is_exact(problem, solver->solve(problem, parts, first), first));
-
-    Solution second = first;
-    std::fill(second.impulse.begin(), second.impulse.end(), 0);
-    SolveSummary summary;
-    long count = -1;
-    {
-      const AllocationCount allocations;
-      summary = solver->solve(problem, parts, second);
-      count = allocations.count();
-    }
-    EXPECT_EQ(count, 0) << problem.row_count() << " rows";
-    EXPECT_TRUE(is_exact(problem, summary, second));
+  for (const int threads : {1, 2}) {
+    second_solve_allocates_nothing(make_pile(5, {.columns = 3, .rows = 3, .layers = 3, .cfm = cfm}), threads);
+    second_solve_allocates_nothing(make_chain(5, {.links = 30, .extra_joints = 5, .closed = true}), threads);
   }
 }
 

@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <new>
 #include <vector>
 
-#include "solver/linear/dense_panel.h"
+#include "solver/linear/dense_tiles.h"
 #include "tests/solver/seeded_random.h"
 
 namespace cleave {
@@ -26,14 +25,8 @@ Eigen::MatrixXd random_positive(int size, int seed) {
 }
 
 void fill(DenseCholesky& cholesky, const Eigen::MatrixXd& a) {
-  const int size = static_cast<int>(a.rows());
-  cholesky.resize(size);
-  for (int p = 0; p < cholesky.panel_count(); ++p) {
-    double* entries = cholesky.begin_panel(p);
-    for (int r = kPanelRows * p; r < std::min(size, kPanelRows * (p + 1)); ++r) {
-      for (int c = 0; c <= r; ++c) entries[(r - kPanelRows * p) + kPanelRows * c] = a(r, c);
-    }
-  }
+  cholesky.resize(static_cast<int>(a.rows()));
+  for (int p = 0; p < cholesky.panel_count(); ++p) cholesky.fill_panel(p, a);
 }
 
 std::vector<double> right_hand_side(int size) {

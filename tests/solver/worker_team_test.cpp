@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace cleave {
@@ -56,6 +58,30 @@ TEST(WorkerTeamTest, ATaskMayWaitForAnEarlierOne) {
     });
     ASSERT_EQ(order.size(), 500u);
     for (int i = 0; i < 500; ++i) EXPECT_EQ(order[i], i);
+  }
+}
+
+// Longer than anyone looks out, at every place where a thread may sleep: between stages, at the end of a
+// stage, for an earlier task, and before the team goes.
+TEST(WorkerTeamTest, WakesThreadsThatFellAsleep) {
+  const auto rest = [] { std::this_thread::sleep_for(std::chrono::milliseconds(10)); };
+  for (int round = 0; round < 5; ++round) {
+    WorkerTeam team(3);
+    rest();
+    std::atomic<int> runs = 0;
+    run(team, 3, [&](int i) {
+      if (i > 0) rest();
+      ++runs;
+    });
+    EXPECT_EQ(runs, 3);
+    std::atomic<int> done = 0;
+    run(team, 3, [&](int i) {
+      wait_until(done, i);
+      rest();
+      raise(done);
+    });
+    EXPECT_EQ(done, 3);
+    rest();
   }
 }
 

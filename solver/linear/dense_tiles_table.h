@@ -1,0 +1,24 @@
+// The tiles of the instruction set that the including file is compiled for.
+#pragma once
+
+#include "solver/linear/block_tiles.h"
+#include "solver/linear/dense_tiles.h"
+#include "solver/linear/panel_tiles.h"
+
+namespace cleave {
+namespace {
+
+constexpr DenseTiles tiles_of(const char* name, bool (*is_supported)()) {
+  return {name,
+          is_supported,
+          subtract_product_tiled,
+          multiply_by_transpose_tiled,
+          weighted_gram_tiled,
+          subtract_panel_product_tiled,
+          multiply_panel_by_transpose_tiled,
+          subtract_panel_vector_tiled,
+          subtract_panel_transpose_tiled};
+}
+
+}  // namespace
+}  // namespace cleave
