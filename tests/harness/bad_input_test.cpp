@@ -5,8 +5,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "harness/nearest_name.h"
-#include "harness/problem_graph.h"
+#include "harness/base/names.h"
+#include "harness/experiment/problem_graph.h"
 #include "scenarios/scene.h"
 #include "tests/harness/problem_file_sample.h"
 #include "tests/harness/run_program.h"
@@ -29,15 +29,15 @@ void expect_refused(const Arguments& arguments, const Arguments& pieces, const f
   EXPECT_TRUE(fs::is_empty(directory)) << what;
 }
 
-Arguments bad_values(const SceneParameter& parameter) {
-  switch (parameter.type) {
-    case SceneParameter::Type::integer:
-      return {std::to_string(std::llround(parameter.min) - 1),
-              std::to_string(std::llround(parameter.max) + 1), "2.5", "many"};
-    case SceneParameter::Type::number:
-    case SceneParameter::Type::number_list:
+Arguments bad_values(const Parameter& parameter) {
+  switch (parameter.kind) {
+    case Parameter::Kind::integer:
+      return {std::to_string(std::llround(parameter.range.min) - 1),
+              std::to_string(std::llround(parameter.range.max) + 1), "2.5", "many"};
+    case Parameter::Kind::number:
+    case Parameter::Kind::numbers:
       return {"-1", "nan", "inf", "heavy"};
-    case SceneParameter::Type::choice:
+    case Parameter::Kind::word:
       return {"no-such-choice"};
   }
   return {};
@@ -46,11 +46,11 @@ Arguments bad_values(const SceneParameter& parameter) {
 TEST(BadSceneOption, IsOneLineThatNamesOptionValueAndRange) {
   const TemporaryDirectory directory;
   for (const SceneEntry& scene : scenes())
-    for (const SceneParameter& parameter : scene.parameters)
+    for (const Parameter& parameter : scene.parameters)
       for (const std::string& value : bad_values(parameter)) {
         const std::string option = "--" + std::string(parameter.name);
         const std::string allowed =
-            parameter.type == SceneParameter::Type::choice ? parameter.choices[0] : std::string("[");
+            parameter.kind == Parameter::Kind::word ? parameter.words[0] : std::string("[");
         expect_refused({"run", "--scene", scene.name, option, value, "--out", directory / "out"},
                        {option + ": ", value, allowed}, directory.path());
       }

@@ -1,4 +1,4 @@
-#include "harness/ode_world.h"
+#include "harness/world/ode_world.h"
 
 #include <gtest/gtest.h>
 
@@ -90,7 +90,7 @@ TEST(State, HashIsFnv1aOfThirteenNumbersABody) {
 
 TEST(State, SameSeedSameHash) {
   for (const SceneEntry& entry : scenes()) {
-    const SceneSettings settings = make_scene_settings(entry, {});
+    const Settings settings = make_scene_settings(entry, {});
     const OdeWorld a(entry, settings, 3, 9.81), b(entry, settings, 3, 9.81), other(entry, settings, 4, 9.81);
     EXPECT_EQ(a.state_hash(), b.state_hash()) << entry.name;
     const bool draws = !std::string(entry.name).starts_with("ladder_");  // nothing is random in those

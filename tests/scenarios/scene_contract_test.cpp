@@ -26,14 +26,13 @@ std::vector<Case> all_cases() {
   for (const SceneEntry& scene : scenes()) {
     Given smallest;
     cases.push_back({&scene, {}});
-    for (const SceneParameter& parameter : scene.parameters) {
-      const std::string least = number_text(parameter.min);
-      if (parameter.type == SceneParameter::Type::integer) {
+    for (const Parameter& parameter : scene.parameters) {
+      const std::string least = number_text(parameter.range.min);
+      if (parameter.kind == Parameter::Kind::integer) {
         cases.push_back({&scene, {{parameter.name, least}}});
         smallest[parameter.name] = least;
       }
-      for (const std::string& choice : parameter.choices)
-        cases.push_back({&scene, {{parameter.name, choice}}});
+      for (const std::string& choice : parameter.words) cases.push_back({&scene, {{parameter.name, choice}}});
     }
     cases.push_back({&scene, smallest});
   }
@@ -124,8 +123,8 @@ TEST(SceneContract, NothingFallsThroughTheStaticPlanes) {
   for (const SceneEntry& scene : scenes()) {
     if (of_ladder(scene)) continue;
     Given small;
-    for (const SceneParameter& parameter : scene.parameters)
-      if (parameter.type == SceneParameter::Type::integer)
+    for (const Parameter& parameter : scene.parameters)
+      if (parameter.kind == Parameter::Kind::integer)
         small[parameter.name] = number_text(std::min(30.0, std::stod(parameter.default_value)) / 3);
     SceneWorld world(scene, small.count("logs") ? Given{{"layers", "5"}, {"logs", "3"}} : small);
     for (int step = 0; step < 200; ++step) world.step(step, 30);
