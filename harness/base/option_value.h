@@ -9,7 +9,8 @@
 
 namespace cleave {
 
-enum class OptionKind { text, number, flag };
+// lines: several texts, one a line.
+enum class OptionKind { text, number, flag, lines };
 
 struct OptionValue {
   std::string name;

@@ -28,27 +28,28 @@ void keep_one(const Given& given, const std::string& option, std::vector<Algorit
 }
 
 // Only the solver of --advance runs: where it ignores parts, options about them would do nothing.
-void check_parts_wanted(const Given& given, const RunOptions& options) {
+void check_parts_wanted(const RepeatedOptions& all, const RunOptions& options) {
   if (make_solver(options.advance, 1, StepContext{})->uses_partition()) return;
   for (const char* option : {"partitioner", "refiner", "skip-small-islands"})
-    if (given.contains(option))
+    if (all.given.contains(option) && !all.stored.contains(option))
       throw std::invalid_argument(std::string("--") + option + ": --advance " + options.advance.text +
                                   " does not use it; allowed with a solver that works on parts");
 }
 
-RunOptions parse_record_options(Given given) {
-  const auto at = given.extract("at");
+RunOptions parse_record_options(const Given& typed) {
+  RepeatedOptions all = with_config(typed, "record", &CommandSet::record, {"at"});
+  const auto at = all.given.extract("at");
   if (at.empty()) throw std::invalid_argument("--at: is required: the steps to record, such as 100,200,300");
   // One solver and one way to split: what no part of them has is refused as in any run.
-  Given one = given;
+  Given one = all.given;
   one.emplace("partitioner", default_run_options().partitioners.front().text);
   one.emplace("refiner", default_run_options().refiners.front().text);
   if (one.contains("advance")) read_named("advance", one["advance"]);  // errors name what was given
   one["solver"] = one.contains("advance") ? one["advance"] : default_run_options().advance.text;
-  RunOptions options = parse_run_options(one);
-  check_parts_wanted(given, options);
-  keep_one(given, "partitioner", options.partitioners);
-  keep_one(given, "refiner", options.refiners);
+  RunOptions options = parse_run_options(one, all.stored);
+  check_parts_wanted(all, options);
+  keep_one(all.given, "partitioner", options.partitioners);
+  keep_one(all.given, "refiner", options.refiners);
   options.at = parse_integers("--at", at.mapped(), {0, std::numeric_limits<int>::max() - 1});
   options.steps = options.at.back() + 1;
   return options;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <memory>
 #include <set>
+#include <sstream>
 #include <stdexcept>
 
 #include "harness/base/names.h"
@@ -48,7 +49,7 @@ std::vector<OptionValue> values_of(const ReplayOptions& options) {
   const auto flag = [](bool set) { return std::string(set ? "true" : "false"); };
   values.push_back({"cold", OptionKind::flag, flag(options.cold), About::problem});
   values.push_back({"write-solutions", OptionKind::flag, flag(options.write_solutions)});
-  values.push_back({"files", OptionKind::text, joined(options.files, " "), About::bookkeeping, false});
+  values.push_back({"files", OptionKind::lines, joined(options.files, "\n"), About::bookkeeping, false});
   return values;
 }
 
@@ -164,6 +165,23 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& argv) {
                             [&] { return work.run(out); });
 }
 
+// What is given beside --config wins; FILES do as a whole.
+ReplayOptions with_stored(const Given& given, ReplayOptions options) {
+  RepeatedOptions all =
+      with_config(given, "replay", &CommandSet::replay, {"cold", "write-solutions", "files"});
+  const auto take = [&](const char* name) {
+    const auto node = all.given.extract(name);
+    return node.empty() ? std::string() : node.mapped();
+  };
+  std::istringstream files(take("files"));
+  if (options.files.empty())
+    for (std::string file; std::getline(files, file);) options.files.push_back(file);
+  options.cold |= take("cold") == "true";
+  options.write_solutions |= take("write-solutions") == "true";
+  options.solve = parse_solve_options(all.given, all.stored);
+  return options;
+}
+
 }  // namespace
 
 std::function<int()> declare_replay(CLI::App& app, const std::vector<std::string>& argv) {
@@ -177,10 +195,7 @@ std::function<int()> declare_replay(CLI::App& app, const std::vector<std::string
   app.add_flag("--cold", state->options.cold, "start from zero impulses in place of the recorded ones");
   app.add_flag("--write-solutions", state->options.write_solutions,
                "copy each file to --out with every solution and partition in it");
-  return [state, argv] {
-    state->options.solve = parse_solve_options(state->given);
-    return replay(state->options, argv);
-  };
+  return [state, argv] { return replay(with_stored(state->given, state->options), argv); };
 }
 
 }  // namespace cleave

@@ -33,7 +33,8 @@ std::string key_text(const RunOptions& options) {
 
 int run(const std::map<std::string, std::string>& given, bool print_key,
         const std::vector<std::string>& argv) {
-  const RunOptions options = parse_run_options(given);
+  const RepeatedOptions all = with_config(given, "run", &CommandSet::run);
+  const RunOptions options = parse_run_options(all.given, all.stored);
   if (print_key) {
     std::printf("%s", key_text(options).c_str());
     return kExitOk;

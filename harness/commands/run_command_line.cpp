@@ -1,6 +1,9 @@
 #include "harness/commands/run_command_line.h"
 
+#include <stdexcept>
+
 #include "harness/base/names.h"
+#include "harness/files/manifest_reader.h"
 
 namespace cleave {
 namespace {
@@ -89,10 +92,24 @@ void declare_scenes(CLI::App& app, Given& given) {
 
 void declare_run_options(CLI::App& app, Given& given, bool CommandSet::*command) {
   const bool with_world = command != &CommandSet::replay;
+  declare(
+      app, given, "config", "FILE",
+      "manifest.json whose run is repeated; options given beside it win, --out and --force are not in it");
   declare_table(app, given, command);
   declare_parameters(app, given, with_world);
   if (with_world) declare_scenes(app, given);
   app.footer(kExample);
+}
+
+RepeatedOptions with_config(Given given, const std::string& name, bool CommandSet::*command,
+                            const std::vector<std::string>& own) {
+  const auto config = given.extract("config");
+  if (config.empty()) return {given, {}};
+  try {
+    return repeated_options(read_manifest_options(config.mapped(), name), given, command, own);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(std::string("--config: ") + error.what());
+  }
 }
 
 }  // namespace cleave

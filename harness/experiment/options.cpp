@@ -83,7 +83,7 @@ bool works_on_parts(const Algorithm* solver) {
 }
 
 // A value that nothing in the run reads would do nothing.
-void check_owned(const RunOptions& options, bool with_world) {
+void check_owned(const RunOptions& options, const std::set<std::string>& stored, bool with_world) {
   std::vector<const Algorithm*> all;
   append(options.solvers, all);
   if (with_world && options.mode == RunMode::lockstep) all.push_back(&options.advance);
@@ -94,7 +94,7 @@ void check_owned(const RunOptions& options, bool with_world) {
   if (with_world) all.push_back(&options.friction);
   for (const auto& [name, value] : options.common) {
     const auto reads = [&](const Algorithm* algorithm) { return algorithm->settings.has(name); };
-    if (is_common(name) && std::ranges::none_of(all, reads))
+    if (is_common(name) && !stored.contains(name) && std::ranges::none_of(all, reads))
       reject(name, "is a parameter of " + owners_of(name) + "; nothing in this run has it");
   }
 }
@@ -184,7 +184,8 @@ NamedAlgorithm named(const std::string& kind, const Algorithm& algorithm) {
 
 RunOptions default_run_options() { return options_with({}); }
 
-RunOptions parse_run_options(const std::map<std::string, std::string>& given) {
+RunOptions parse_run_options(const std::map<std::string, std::string>& given,
+                             const std::set<std::string>& stored) {
   require(given, "scene", "is required; choices: " + joined(names_of(scenes())));
   require(given, "out", kOutIsRequired);
   RunOptions options = options_with(read_common(given));
@@ -193,7 +194,7 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given) {
   read_stiffness(given, options);
   override_solvers(given, options);
   read_friction(options);
-  check_owned(options, true);
+  check_owned(options, stored, true);
   if (options.mode == RunMode::separate) {
     exclude(given, "advance",
             "has a meaning only in lockstep: in --mode separate every combination advances its world");
@@ -206,12 +207,13 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given) {
   return options;
 }
 
-RunOptions parse_solve_options(const std::map<std::string, std::string>& given) {
+RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
+                               const std::set<std::string>& stored) {
   require(given, "out", kOutIsRequired);
   RunOptions options = options_with(read_common(given));
   read_table(given, options);
   override_solvers(given, options);
-  check_owned(options, false);
+  check_owned(options, stored, false);
   for (const AlgorithmEntry& ode : ode_baselines())
     if (std::ranges::count(options.solvers, ode.name, &Algorithm::name) > 0)
       reject("solver",

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -78,11 +79,15 @@ RunOptions default_run_options();
 // Reads and checks given values by option name (flags: "true"); names outside the table are parameters of
 // algorithms or options of the scene.
 // --stiffness k and --damping d together mean erp = h k / (h k + d) and cfm = 1 / (h k + d), with h = dt.
+// stored: names in `given` that come from a manifest, which names all parameters; one that nothing in this
+// run reads is then no mistake.
 // Throws std::invalid_argument with one line naming the option, the value and the allowed range or choices.
-RunOptions parse_run_options(const std::map<std::string, std::string>& given);
+RunOptions parse_run_options(const std::map<std::string, std::string>& given,
+                             const std::set<std::string>& stored = {});
 
 // The same for a command that solves without a scene; no option of a scene may be given.
-RunOptions parse_solve_options(const std::map<std::string, std::string>& given);
+RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
+                               const std::set<std::string>& stored = {});
 
 // Every option with its value as text: the table's, the parameters of algorithms, the scene's; what the
 // manifest holds.

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <sstream>
 #include <stdexcept>
 
 #include "harness/files/json_writer.h"
@@ -10,11 +11,14 @@
 namespace cleave {
 namespace {
 
-constexpr const char* kSchema = "cleave-run-1";
-
 void add_option(JsonWriter& json, const OptionValue& option) {
   if (option.kind == OptionKind::text) {
     json.field(option.name, option.text);
+  } else if (option.kind == OptionKind::lines) {
+    json.begin_array(option.name);
+    std::istringstream lines(option.text);
+    for (std::string line; std::getline(lines, line);) json.value(line);
+    json.end_array();
   } else {
     // Numbers and truth values already read as JSON; a number that was not given is null.
     json.field(option.name, JsonLiteral{option.text == "nan" || option.text.empty() ? "null" : option.text});
@@ -150,7 +154,7 @@ void Manifest::write_end(const std::string& state, const WorkResult& result, con
 void Manifest::write(const std::string& state, const WorkResult* result, const std::string& message) const {
   JsonWriter json;
   json.begin_object();
-  json.field("schema", kSchema);
+  json.field("schema", kManifestSchema);
   json.field("state", state);
   if (!message.empty()) json.field("message", message);
   json.field("command", description_.command);

@@ -17,6 +17,8 @@
 
 namespace cleave {
 
+constexpr const char* kManifestSchema = "cleave-run-1";
+
 // What is known before the work begins.
 struct WorkDescription {
   std::string command;

@@ -1,0 +1,101 @@
+#include "harness/experiment/repeated_options.h"
+
+#include <algorithm>
+#include <initializer_list>
+#include <stdexcept>
+
+#include "harness/base/names.h"
+
+namespace cleave {
+namespace {
+
+using Given = std::map<std::string, std::string>;
+
+std::string value_of(const Given& given, const std::string& name) {
+  const auto found = given.find(name);
+  return found == given.end() ? "" : found->second;
+}
+
+bool any_of(const Given& given, std::initializer_list<const char*> names) {
+  return std::ranges::any_of(names, [&](const char* name) { return given.contains(name); });
+}
+
+void drop(Given& stored, std::initializer_list<const char*> names) {
+  for (const char* name : names) stored.erase(name);
+}
+
+const OptionSpec* find_spec(const std::string& name) {
+  const auto found = std::ranges::find(run_option_specs(), name, &OptionSpec::name);
+  return found == run_option_specs().end() ? nullptr : &*found;
+}
+
+const CommonParameter* find_common(const std::string& name) {
+  for (const CommonParameter& common : common_parameters())
+    if (common.parameter.name == name) return &common;
+  return nullptr;
+}
+
+std::vector<std::string> scene_parameters(const Given& stored) {
+  const std::string scene = value_of(stored, "scene");
+  if (scene.empty()) return {};
+  check_algorithm("scene", scene);
+  const std::vector<Parameter> parameters = parameters_of("scene", algorithm_name(scene));
+  return names_of(std::span<const Parameter>(parameters));
+}
+
+[[noreturn]] void reject_unknown(const std::string& name, std::vector<std::string> known) {
+  for (const OptionSpec& spec : run_option_specs()) known.push_back(spec.name);
+  for (const CommonParameter& common : common_parameters()) known.push_back(common.parameter.name);
+  const std::string nearest = nearest_name(name, known);
+  throw std::invalid_argument("option '" + name + "' is unknown" +
+                              (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
+}
+
+// A manifest names every option of the table; the command takes those it declares. A flag is given or not.
+bool is_taken(const std::string& name, const std::string& value, bool CommandSet::*command,
+              const std::vector<std::string>& own_and_scene) {
+  const bool with_world = command != &CommandSet::replay;
+  if (const OptionSpec* spec = find_spec(name))
+    return spec->commands.*command && name != "out" && name != "force" &&
+           !(spec->kind == OptionKind::flag && value == "false");
+  if (std::ranges::count(own_and_scene, name) > 0) return true;
+  if (const CommonParameter* common = find_common(name)) return with_world || common->in_replay;
+  reject_unknown(name, own_and_scene);
+}
+
+void drop_replaced(const Given& given, Given& stored) {
+  if (any_of(given, {"erp", "cfm"})) drop(stored, {"stiffness", "damping"});
+  if (any_of(given, {"stiffness", "damping"}) || any_of(stored, {"stiffness", "damping"}))
+    drop(stored, {"erp", "cfm"});
+  if (given.contains("solver")) drop(stored, {"strategy", "kernel"});
+  if (value_of(given.contains("mode") ? given : stored, "mode") == "separate")
+    drop(stored, {"advance", "record-motion"});
+}
+
+bool is_another_scene(const Given& given, const Given& stored) {
+  return given.contains("scene") &&
+         algorithm_name(given.at("scene")) != algorithm_name(value_of(stored, "scene"));
+}
+
+}  // namespace
+
+RepeatedOptions repeated_options(const Given& stored, const Given& given, bool CommandSet::*command,
+                                 const std::vector<std::string>& own) {
+  const std::vector<std::string> of_scene = scene_parameters(stored);
+  std::vector<std::string> own_and_scene = own;
+  own_and_scene.insert(own_and_scene.end(), of_scene.begin(), of_scene.end());
+  Given taken;
+  for (const auto& [name, value] : stored)
+    if (is_taken(name, value, command, own_and_scene)) taken.emplace(name, value);
+  if (is_another_scene(given, taken))
+    for (const std::string& name : of_scene)
+      if (find_common(name) == nullptr) taken.erase(name);
+  drop_replaced(given, taken);
+
+  RepeatedOptions options{given, {}};
+  for (const auto& [name, value] : taken)
+    if (options.given.emplace(name, value).second) options.stored.insert(name);
+  return options;
+}
+
+}  // namespace cleave

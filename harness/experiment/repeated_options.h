@@ -1,0 +1,31 @@
+// A run that was: the options its manifest holds, beside those given now.
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "harness/experiment/options.h"
+
+namespace cleave {
+
+struct RepeatedOptions {
+  std::map<std::string, std::string> given;
+  std::set<std::string> stored;  // names in `given` that nobody gave now
+};
+
+// Joins them so that the command parses them as if all were given; with none given now the run is the same.
+// `given` wins, and with it go the stored options that it replaces:
+//     --erp, --cfm              --stiffness, --damping (their erp and cfm stay)
+//     --stiffness, --damping    --erp, --cfm
+//     --solver                  --strategy, --kernel
+//     --scene of another name   the options of the stored scene
+// Stored defaults that cannot be given beside others (--erp with --stiffness, --advance in --mode separate)
+// are left out, and --out and --force with them. own: options that the command alone declares.
+// Throws std::invalid_argument for a stored option that no command has.
+RepeatedOptions repeated_options(const std::map<std::string, std::string>& stored,
+                                 const std::map<std::string, std::string>& given, bool CommandSet::*command,
+                                 const std::vector<std::string>& own);
+
+}  // namespace cleave
