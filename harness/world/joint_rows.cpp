@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "harness/world/extract_row.h"
+#include "harness/world/joint_axes.h"
 
 // ODE's joint classes, as far as we call them: libode exports these functions but no header declares them.
 // The names that the linker looks up carry the argument types, so a library with another signature fails to
@@ -45,15 +46,13 @@ struct OdeRows {
   int findex[kMostRows] = {};
 };
 
-// A joint kind that is extracted. limit_param is null for a joint without limits and motors, own_param and
-// set_own_param for one without an erp and a cfm of its own.
+// A joint kind that is extracted. own_param and set_own_param are null for one without an erp and a cfm of
+// its own.
 struct JointKind {
   dJointType type;
-  const char* name;
   int rows;
   void (*fill)(dJointID joint, double inverse_h, double erp, OdeRows& rows);
   void (*anchor)(dJointID joint, dVector3 point);
-  dReal (*limit_param)(dJointID joint, int parameter);
   dReal (*own_param)(dJointID joint, int parameter);
   void (*set_own_param)(dJointID joint, int parameter, dReal value);
 };
@@ -72,57 +71,28 @@ void first_body_position(dJointID joint, dVector3 point) {
 }
 
 const JointKind kJointKinds[] = {
-    {dJointTypeBall, "ball", 3, fill_rows<dxJointBall>, dJointGetBallAnchor, nullptr, dJointGetBallParam,
-     dJointSetBallParam},
-    {dJointTypeHinge, "hinge", 5, fill_rows<dxJointHinge>, dJointGetHingeAnchor, dJointGetHingeParam, nullptr,
-     nullptr},
-    {dJointTypeSlider, "slider", 5, fill_rows<dxJointSlider>, first_body_position, dJointGetSliderParam,
-     nullptr, nullptr},
-    {dJointTypeFixed, "fixed", 6, fill_rows<dxJointFixed>, first_body_position, nullptr, dJointGetFixedParam,
+    {dJointTypeBall, 3, fill_rows<dxJointBall>, dJointGetBallAnchor, dJointGetBallParam, dJointSetBallParam},
+    {dJointTypeHinge, 5, fill_rows<dxJointHinge>, dJointGetHingeAnchor, nullptr, nullptr},
+    {dJointTypeSlider, 5, fill_rows<dxJointSlider>, first_body_position, nullptr, nullptr},
+    {dJointTypeFixed, 6, fill_rows<dxJointFixed>, first_body_position, dJointGetFixedParam,
      dJointSetFixedParam},
 };
-
-// By dJointType.
-constexpr const char* kTypeNames[] = {"unknown",
-                                      "ball",
-                                      "hinge",
-                                      "slider",
-                                      "contact",
-                                      "universal",
-                                      "hinge2",
-                                      "fixed",
-                                      "null",
-                                      "angular motor",
-                                      "linear motor",
-                                      "plane2d",
-                                      "prismatic-rotoide",
-                                      "prismatic-universal",
-                                      "piston",
-                                      "double ball",
-                                      "double hinge",
-                                      "transmission"};
-static_assert(std::size(kTypeNames) == dJointTypeTransmission + 1);
 
 const JointKind& extracted_kind(dJointID joint, int index) {
   const dJointType type = dJointGetType(joint);
   const auto* kind = std::find_if(std::begin(kJointKinds), std::end(kJointKinds),
                                   [type](const JointKind& k) { return k.type == type; });
   if (kind == std::end(kJointKinds))
-    throw std::runtime_error("joint " + std::to_string(index) + ": type " + kTypeNames[type] +
+    throw std::runtime_error("joint " + std::to_string(index) + ": type " + joint_type_name(type) +
                              " is not extracted from ODE (ball, hinge, slider and fixed are)");
   return *kind;
 }
 
-void require_no_limit_or_motor(dJointID joint, const JointKind& kind, int index) {
-  if (!kind.limit_param) return;
-  const char* feature = nullptr;
-  if (std::isfinite(kind.limit_param(joint, dParamLoStop)) ||
-      std::isfinite(kind.limit_param(joint, dParamHiStop)))
-    feature = "limit";
-  if (kind.limit_param(joint, dParamFMax) != 0) feature = "motor";
-  if (feature)
-    throw std::runtime_error("joint " + std::to_string(index) + ": a " + feature + " on a " + kind.name +
-                             " joint is not extracted from ODE");
+void require_plain_axes(dWorldID world, dJointID joint, int index) {
+  const std::string feature = find_axis_feature(world, joint);
+  if (!feature.empty())
+    throw std::runtime_error("joint " + std::to_string(index) + ": a " + feature + " of a " +
+                             joint_type_name(dJointGetType(joint)) + " joint is not extracted from ODE");
 }
 
 // Gives an own parameter of a joint another value while ODE fills the rows, and puts it back.
@@ -178,7 +148,8 @@ void require_joints_listed(const OdeWorld& world) {
       if (dJointGetType(joint) == dJointTypeContact ||
           std::binary_search(listed.begin(), listed.end(), joint))
         continue;
-      throw std::runtime_error("body " + std::to_string(i) + ": its " + kTypeNames[dJointGetType(joint)] +
+      throw std::runtime_error("body " + std::to_string(i) + ": its " +
+                               joint_type_name(dJointGetType(joint)) +
                                " joint is not among the scene's joints");
     }
   }
@@ -197,7 +168,7 @@ void append_joint(const OdeWorld& world, int index, double h_s, double erp, doub
                   const ContactMemory& memory, StepProblem& problem) {
   const dJointID joint = world.content().joints[index];
   const JointKind& kind = extracted_kind(joint, index);
-  require_no_limit_or_motor(joint, kind, index);
+  require_plain_axes(world.world(), joint, index);
   ExtractedRow row;
   row.body_a = attached_body(world, joint, 0, index);
   row.body_b = attached_body(world, joint, 1, index);

@@ -20,8 +20,8 @@ namespace cleave {
 
 // Appends the rows of every enabled joint of world.content().joints in that order, with the joint's index as
 // row_constraint. erp, cfm: of the step, for joints without their own. Throws std::runtime_error naming the
-// type and the feature for any other joint type, a limit, a motor, and for a joint on a body that
-// content().joints does not list.
+// type and the feature for any other joint type, for whatever is set on an axis (joint_axes.h: limit, motor,
+// bounce, ...), and for a joint on a body that content().joints does not list.
 void append_joint_rows(const OdeWorld& world, double h_s, double erp, double cfm, const ContactMemory& memory,
                        StepProblem& problem);
 

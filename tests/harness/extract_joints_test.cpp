@@ -232,8 +232,7 @@ TEST(JointRows, WarmImpulsesFollowTheJointWhenAnotherIsDisabled) {
   EXPECT_EQ(without_ball.row_constraint, std::vector<int>(6, 1));
 }
 
-// --- refusals
-// -----------------------------------------------------------------------------------------------------
+// --- refusals -------------------------------------------------------------------------------------------
 
 void expect_refused(const std::function<void(dWorldID, SceneContent&)>& add, const std::string& named) {
   const auto world = make_test_world(
@@ -288,12 +287,12 @@ TEST(JointRows, LimitsMotorsAndUnlistedJointsAreRefusedByName) {
                            value);
     };
   };
-  expect_refused(hinge_with(dParamLoStop, -1), "limit on a hinge");
-  expect_refused(hinge_with(dParamHiStop, 1), "limit on a hinge");
-  expect_refused(hinge_with(dParamFMax, 5), "motor on a hinge");
-  expect_refused(slider_with(dParamLoStop, -1), "limit on a slider");
-  expect_refused(slider_with(dParamHiStop, 1), "limit on a slider");
-  expect_refused(slider_with(dParamFMax, 5), "motor on a slider");
+  expect_refused(hinge_with(dParamLoStop, -1), "limit on axis 1 of a hinge");
+  expect_refused(hinge_with(dParamHiStop, 1), "limit on axis 1 of a hinge");
+  expect_refused(hinge_with(dParamFMax, 5), "motor on axis 1 of a hinge");
+  expect_refused(slider_with(dParamLoStop, -1), "limit on axis 1 of a slider");
+  expect_refused(slider_with(dParamHiStop, 1), "limit on axis 1 of a slider");
+  expect_refused(slider_with(dParamFMax, 5), "motor on axis 1 of a slider");
   expect_refused(
       [](dWorldID w, SceneContent& content) {
         TestRandom random(3);
