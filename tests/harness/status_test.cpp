@@ -1,0 +1,83 @@
+// Which statuses there are and who gives them: one that nothing gives is documented as reserved, and a name
+// that nobody needs does not stay.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+#include "solver/step_solver.h"
+#include "tests/harness/run_program.h"
+
+namespace cleave {
+namespace {
+
+namespace fs = std::filesystem;
+using Files = std::set<std::string>;
+
+// By status, the sources that give it to a solve or a row. Comparisons do not count.
+const std::map<std::string, Files> kGivers = {
+    {"ok", {"solver/step_solver.h", "harness/experiment/combination.h"}},
+    {"not_converged",
+     {"solver/direct_solver.cpp", "solver/baselines/pgs.cpp", "harness/experiment/combination.cpp"}},
+    {"timeout", {}},  // reserved: a run has no limit of time yet
+    {"out_of_memory", {"harness/experiment/combination.cpp"}},
+    {"diverged", {"solver/direct_solver.cpp", "harness/experiment/combination.cpp"}},
+    {"refused", {"solver/step_solver.cpp", "harness/world/ode_baselines.cpp"}},
+    {"crashed", {"harness/world/ode_baselines.cpp"}},
+    {"skipped", {"harness/experiment/step_record.h"}},
+};
+
+// status = SolveStatus::refused, status = "skipped".
+std::map<std::string, Files> find_givers() {
+  static const std::regex pattern(R"([^=!<>]=\s*SolveStatus::(\w+)|status = \"(\w+)\")");
+  std::map<std::string, Files> givers;
+  for (const char* folder : {"harness", "partition", "scenarios", "solver"})
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(CLEAVE_SOURCE_DIR) / folder)) {
+      const fs::path& path = entry.path();
+      if (path.extension() != ".h" && path.extension() != ".cpp") continue;
+      const std::string text = read_text(path);
+      for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match)
+        givers[(*match)[1].str() + (*match)[2].str()].insert(fs::relative(path, CLEAVE_SOURCE_DIR));
+    }
+  return givers;
+}
+
+std::set<std::string> all_names() {
+  std::set<std::string> names;
+  for (int i = 0; i <= static_cast<int>(SolveStatus::skipped); ++i)
+    names.insert(to_string(static_cast<SolveStatus>(i)));
+  return names;
+}
+
+TEST(Statuses, EachIsGivenByWhomTheTableSays) {
+  std::map<std::string, Files> found = find_givers();
+  EXPECT_GE(found.size(), 6u);
+  for (const auto& [status, files] : kGivers) EXPECT_EQ(found[status], files) << status;
+}
+
+TEST(Statuses, TheTableNamesAll) {
+  std::set<std::string> listed;
+  for (const auto& [status, files] : kGivers) listed.insert(status);
+  EXPECT_EQ(listed, all_names());
+}
+
+TEST(Statuses, OneThatNothingGivesIsDocumentedAsReserved) {
+  const std::string solver = read_text(fs::path(CLEAVE_SOURCE_DIR) / "solver/README.md");
+  const std::string schema = read_text(fs::path(CLEAVE_SOURCE_DIR) / "results/README.md");
+  int reserved = 0;
+  for (const auto& [status, files] : kGivers) {
+    const bool nobody = files.empty();
+    reserved += nobody;
+    EXPECT_EQ(solver.find("`" + status + "` is reserved") != std::string::npos, nobody) << status;
+    EXPECT_EQ(schema.find("`" + status + "` is reserved") != std::string::npos, nobody) << status;
+    EXPECT_NE(schema.find("`" + status + "`"), std::string::npos) << status;
+  }
+  EXPECT_EQ(reserved, 1);
+}
+
+}  // namespace
+}  // namespace cleave
