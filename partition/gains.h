@@ -2,8 +2,9 @@
 //
 // For body i in part A and another part B adjacent to it:
 //
-//     E_i(B) = sum of w_ij over j in B,     I_i = sum of w_ij over the other j in A,     D_i(B) = E_i(B) -
-//     I_i.
+//     E_i(B) = sum of w_ij over j in B,
+//     I_i    = sum of w_ij over the other j in A,
+//     D_i(B) = E_i(B) - I_i.
 //
 // D_i(B) is the decrease of the total cut weight when i moves to B (Fiduccia & Mattheyses 1982); swapping i
 // with j of B decreases it by D_i(B) + D_j(A) - 2 w_ij (Kernighan & Lin 1970), because the edge (i, j) stays

@@ -3,13 +3,23 @@
 //
 // Root attributes: schema, scene, step, seed, h_s (step in s), friction_model, erp, cfm.
 // Datasets, little endian:
-//     mass (n,6,6)   free_velocity (n,6)   row_body (m,2) int32, -1 = static   jacobian (m,12)   rhs (m)
-//     compliance (m) lower (m) upper (m), infinite allowed   row_kind (m) uint8, 0 bilateral 1 normal 2
-//     friction friction_row (m) int32, the normal row or -1           friction_coefficient (m) row_constraint
-//     (m) int32   contact_point (m,3)         warm_impulse (m)
+//     mass                  (n,6,6)
+//     free_velocity         (n,6)
+//     row_body              (m,2) int32, -1 = static
+//     jacobian              (m,12)
+//     rhs, compliance       (m)
+//     lower, upper          (m), infinite allowed
+//     row_kind              (m) uint8: 0 bilateral, 1 normal, 2 friction
+//     friction_row          (m) int32, the normal row or -1
+//     friction_coefficient  (m)
+//     row_constraint        (m) int32
+//     contact_point         (m,3)
+//     warm_impulse          (m)
 // as in solver/step_problem.h, 64-bit floats where no type is given, and
-//     position (n,3) m   orientation (n,4) quaternion w x y z   body_group (n) int32, optional
-//     shape              optional group for drawing, see ProblemShapes
+//     position              (n,3) m
+//     orientation           (n,4) quaternion w x y z
+//     body_group            (n) int32, optional
+//     shape                 optional group for drawing, see ProblemShapes
 // Solutions, any number of each, by label (see combination_label):
 //     solution/LABEL   impulse (m)   velocity (n,6) = v0 + M^-1 J^T impulse
 //                      attributes solver, strategy, kernel, partitioner, refiner, residual_m_per_s

@@ -24,8 +24,7 @@ namespace cleave {
 //   none           one row a contact
 //   constant       bound = h * friction_force_n
 //   box            bound = mu * predicted normal impulse (matched contact of the previous step, then 5
-//   Gauss-Seidel
-//                  sweeps with moving bounds), then frozen: a true MLCP, the same for every solver
+//                  Gauss-Seidel sweeps with moving bounds), then frozen: a true MLCP, the same for every solver
 //   box-converged  outer fixed point on the bounds to 1e-6 relative or a stated cap; the mismatch is reported
 enum class FrictionModel { none, constant, box, box_converged };
 

@@ -9,11 +9,9 @@
 //   openblas/ROWS           dpotrf, one thread
 //   cholesky_2/ROWS         ours, two threads, the widest instruction set
 //   side_by_side/ROWS       two factorisations of ours, one thread each, at the same time; the time of one,
-//   so
-//                           twice gflop_per_s is what the machine can give to two threads
+//                           so twice gflop_per_s is what the machine can give to two threads
 //   inside/ROWS             the same factorisation within the kernel schur-rows, one thread, on a recorded
-//   problem
-//                           FILE with all rows free, split by mindp; ROWS: of its interface
+//                           problem FILE with all rows free, split by mindp; ROWS: of its interface
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -9,7 +9,7 @@
 //   cholmod/KIND     one numeric factorisation of H by CHOLMOD, KIND supernodal or simplicial
 //   factor, assemble our own, of the same H; gflop_per_s counts CHOLMOD's operations of its best ordering
 //   schur_bodies/T   both factorisation stages of that kernel on T threads (parts: 25 bodies, by greedy
-//   growth)
+//                    growth)
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

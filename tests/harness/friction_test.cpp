@@ -60,8 +60,7 @@ class OracleSolver : public StepSolver {
   }
 };
 
-// --- prediction
-// ---------------------------------------------------------------------------------------------------
+// --- prediction -----------------------------------------------------------------------------------------
 
 // The same sweeps on the dense matrix J M^-1 J^T + C, recomputing every row's slack from scratch.
 std::vector<double> slow_prediction(const StepProblem& problem) {
@@ -147,8 +146,7 @@ TEST(FrictionPrediction, EmptyProblemsAreFine) {
   EXPECT_EQ(bound_mismatch(problem, {}), 0);
 }
 
-// --- mismatch
-// -----------------------------------------------------------------------------------------------------
+// --- mismatch -------------------------------------------------------------------------------------------
 
 // Contacts with mu = 0.5 and the given friction bounds.
 StepProblem make_bounds(std::initializer_list<double> bounds) {
@@ -180,8 +178,7 @@ TEST(BoundMismatch, ContactsThatCarryNothingAreMeasuredAgainstTheStep) {
   EXPECT_EQ(bound_mismatch(make_bounds({0, 0}), std::vector<double>(6, 0.0)), 0);
 }
 
-// --- fixed point
-// --------------------------------------------------------------------------------------------------
+// --- fixed point ----------------------------------------------------------------------------------------
 
 TEST(ConvergedFriction, BoundsMatchTheSolutionAfterwards) {
   int most_solves = 0, converged_columns = 0;
