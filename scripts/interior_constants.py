@@ -15,6 +15,7 @@ class Total:
     problems: int = 0
     factorizations: int = 0
     most: int = 0  # factorisations of one problem
+    proximal: int = 0  # problems that the first attempt left above the limit
     above_limit: int = 0
     worst_m_per_s: float = 0.0
 
@@ -23,6 +24,7 @@ class Total:
         self.problems += 1
         self.factorizations += count
         self.most = max(self.most, count)
+        self.proximal += row["proximal"] == "1"
         self.above_limit += row["exact"] != "1"
         self.worst_m_per_s = max(self.worst_m_per_s, float(row["residual_m_per_s"]))
 
@@ -63,16 +65,20 @@ def buying_nothing(found):
 
 
 def _cell(total, default):
-    value = f"off ({total.value})" if total.kind == "off" else total.value
-    lost = total.above_limit - default.above_limit
-    return (f"{value}: {total.factorizations} ({100 * total.change(default):+.1f} %)" +
-            (f", {lost} more above the limit" if lost > 0 else f", {-lost} fewer above the limit" if lost < 0 else ""))
+    text = f"off ({total.value})" if total.kind == "off" else total.value
+    text += f": {total.factorizations} ({100 * total.change(default):+.1f} %)"
+    for name, of_default, count in (("proximal", default.proximal, total.proximal),
+                                    ("above the limit", default.above_limit, total.above_limit)):
+        text += f", {count} {name}" if count != of_default else ""
+    return text
 
 
 def markdown(found):
     default, constants = by_constant(found)
     lines = [f"As it is: {default.factorizations} factorisations over {default.problems} problems, at most {default.most} "
-             f"of one, {default.above_limit} above the limit, worst residual {default.worst_m_per_s:.1e} m/s.", "",
+             f"of one; {default.proximal} proximal, {default.above_limit} above the limit, worst residual "
+             f"{default.worst_m_per_s:.1e} m/s. Proximal: the first attempt ended above the limit, and proximal steps "
+             "followed; shown where the number differs.", "",
              "| constant | value tried: factorisations (change) |", "| --- | --- |"]
     lines += [f"| `{name}` | {'; '.join(_cell(total, default) for total in values)} |" for name, values in constants.items()]
     nothing = ", ".join(f"`{name}`" for name in buying_nothing(found)) or "none"

@@ -5,7 +5,7 @@
 //
 // Writes CSV to standard output, a line a constant, value and problem. kind: default (as the solver has it,
 // constant "-", first), off (the value takes the constant's effect away), or other. Without --constant every
-// constant is changed.
+// constant is changed. proximal: the first attempt ended above the limit, and proximal steps followed.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -42,8 +42,8 @@ void solve_all(const Request& request, const InteriorConstants& constants, const
     solution.impulse = problem.warm_impulse;
     const SolveSummary summary = solver->solve(problem, {}, solution);
     const ResidualReport verdict = judge(problem, solution.impulse);
-    std::printf("%s,%s,%d,%d,%.3g\n", label.c_str(), name.c_str(), summary.factorizations,
-                verdict.exact ? 1 : 0, verdict.residual_m_per_s);
+    std::printf("%s,%s,%d,%d,%d,%.3g\n", label.c_str(), name.c_str(), summary.factorizations,
+                summary.fallbacks > 0 ? 1 : 0, verdict.exact ? 1 : 0, verdict.residual_m_per_s);
   }
   std::fflush(stdout);
 }
@@ -59,7 +59,7 @@ void try_value(const Request& request, std::string_view constant, double value, 
 }
 
 void ablate(const Request& request) {
-  std::puts("constant,value,kind,problem,factorizations,exact,residual_m_per_s");
+  std::puts("constant,value,kind,problem,factorizations,proximal,exact,residual_m_per_s");
   solve_all(request, {}, "-,-,default");
   const InteriorConstants defaults;
   visit_constants(defaults, [&](const char* name, auto&, const Alternatives& tried) {

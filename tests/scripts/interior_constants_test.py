@@ -28,12 +28,12 @@ if os.environ["STAND_IN_CODE"] != "0":
     sys.exit("interior_point_benchmark: no")
 files = [word for word in words if word.endswith(".h5")]
 assert files and all(os.path.exists(file) for file in files), files
-print("constant,value,kind,problem,factorizations,exact,residual_m_per_s")
+print("constant,value,kind,problem,factorizations,proximal,exact,residual_m_per_s")
 for constant, value, kind, more in (("-", "-", "default", 0), ("useful", "0", "off", 1), ("harmful", "0", "off", -1),
                                     ("safe", "0", "off", 0), ("shape", "1", "other", 0), ("shape", "4", "other", 1)):
     for file in files:
         lost = constant == "safe" and file == files[-1]
-        print(constant, value, kind, file, 10 + more, 0 if lost else 1, 1e-3 if lost else 1e-12, sep=",")
+        print(constant, value, kind, file, 10 + more, int(lost), 0 if lost else 1, 1e-3 if lost else 1e-12, sep=",")
 """
 
 
@@ -57,9 +57,9 @@ class AblateInteriorPointTest(StandInCase):
             rows = list(csv.DictReader(file))
         self.assertEqual(len(rows), 6 * 16)
         self.assertEqual(rows[-1]["problem"], "ladder_loop_cfm_0/ladder_loop_step000320.h5")
-        self.assertIn("As it is: 160 factorisations over 16 problems, at most 10 of one, 0 above the limit", result.stdout)
+        self.assertIn("As it is: 160 factorisations over 16 problems, at most 10 of one; 0 proximal, 0 above the limit", result.stdout)
         self.assertIn("| `useful` | off (0): 176 (+10.0 %) |", result.stdout)
-        self.assertIn("| `safe` | off (0): 160 (+0.0 %), 1 more above the limit |", result.stdout)
+        self.assertIn("| `safe` | off (0): 160 (+0.0 %), 1 proximal, 1 above the limit |", result.stdout)
         self.assertIn("| `shape` | 1: 160 (+0.0 %); 4: 176 (+10.0 %) |", result.stdout)
         self.assertTrue(result.stdout.endswith("(less than 1 % and no problem): `harmful`.\n"), result.stdout)
 
@@ -78,8 +78,8 @@ class AblateInteriorPointTest(StandInCase):
 class TotalsTest(unittest.TestCase):
 
     def test_without_an_off_value_every_value_that_was_tried_counts(self):
-        lines = ["constant,value,kind,problem,factorizations,exact,residual_m_per_s", "-,-,default,p,1000,1,0"]
-        lines += [f"{name},{value},other,p,{count},1,0"
+        lines = ["constant,value,kind,problem,factorizations,proximal,exact,residual_m_per_s", "-,-,default,p,1000,0,1,0"]
+        lines += [f"{name},{value},other,p,{count},0,1,0"
                   for name, value, count in (("a", 1, 1009), ("a", 2, 1010), ("b", 1, 1009), ("b", 2, 900))]
         self.assertEqual(interior_constants.buying_nothing(interior_constants.totals("\n".join(lines))), ["b"])
 
