@@ -58,14 +58,16 @@ struct Link {
 class DirectSolver : public StepSolver {
  public:
   DirectSolver(std::string_view strategy, const KernelRow& kernel, const SolveOptions& options,
-               const Settings& settings)
+               const Settings& settings, std::unique_ptr<Strategy> own)
       : strategy_(strategy),
         kernel_name_(kernel.resolved),
         splits_(kernel.splits),
         settings_(settings),
         clock_(options.threads),
         kernel_(kernel.make(settings)),
-        state_(read_direct_options(options, settings), clock_) {}
+        state_(read_direct_options(options, settings), clock_) {
+    if (own != nullptr) links_.push_back({strategy, std::move(own)});
+  }
 
   bool uses_partition() const override { return splits_; }
 
@@ -236,13 +238,14 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const 
 }  // namespace
 
 std::unique_ptr<StepSolver> make_direct_solver(std::string_view strategy, std::string_view kernel,
-                                               const SolveOptions& options, const Settings& settings) {
+                                               const SolveOptions& options, const Settings& settings,
+                                               std::unique_ptr<Strategy> own) {
   const auto name_of = [](const AlgorithmEntry& row) { return std::string_view(row.name); };
   const auto strategy_row = std::ranges::find(strategy_table(), strategy, name_of);
   const auto kernel_row = std::ranges::find(kernel_table(), kernel, name_of);
   if (strategy_row == strategy_table().end() || kernel_row == kernel_table().end()) return nullptr;
   if (!runs_on(*strategy_row, *kernel_row)) return nullptr;
-  return std::make_unique<DirectSolver>(strategy, *kernel_row, options, settings);
+  return std::make_unique<DirectSolver>(strategy_row->name, *kernel_row, options, settings, std::move(own));
 }
 
 }  // namespace cleave

@@ -5,13 +5,6 @@
 #include <limits>
 
 namespace cleave {
-namespace {
-
-// Settling is given up above so many violations and this share of the rows: more never came right.
-constexpr int kMostViolations = 3;
-constexpr double kViolatedShare = 0.005;
-
-}  // namespace
 
 void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,
                        std::span<const double> warm_impulse) {
@@ -107,17 +100,16 @@ int SolveState::find_violations(double tolerance) {
   return static_cast<int>(violated.size());
 }
 
-bool SolveState::settle(double tolerance) {
-  constexpr int kRounds = 4;
+bool SolveState::settle(double tolerance, const Settling& settling) {
+  const double most =
+      settling.most_violations + settling.violated_share * static_cast<double>(impulse.size());
   int least = std::numeric_limits<int>::max();
-  for (int round = 0; round < kRounds && factor_free(); ++round) {
-    refine_free(0.1 * tolerance, 8, true);
+  for (int round = 0; round < settling.rounds && factor_free(); ++round) {
+    refine_free(0.1 * tolerance, settling.refinements, true);
     const int count = find_violations(tolerance);
     // A narrow row may stand at the wrong one of its bounds and yet be right to within the tolerance.
     if (count == 0 || residual() <= tolerance) return true;
-    if (count >= least || count > kMostViolations + kViolatedShare * static_cast<double>(impulse.size())) {
-      return false;
-    }
+    if (count >= least || count > most) return false;
     least = count;
     for (int row : violated) flip(row);
   }

@@ -19,6 +19,15 @@ enum class RowState : std::uint8_t { free, lower, upper, held };
 // loses the soft directions to rounding. Residuals are those of C, so that increments correct for it.
 inline constexpr double kFactoredCompliance = 3e-13;
 
+// How often and how far SolveState::settle goes.
+struct Settling {
+  int rounds = 4;       // solves, each after flipping what the last one left violated
+  int refinements = 8;  // steps of iterative refinement of each, at most
+  // Given up above so many violations and this share of the rows: more never came right.
+  int most_violations = 3;
+  double violated_share = 0.005;
+};
+
 struct SolveState {
   SolveState(const DirectOptions& solve_options, StageClock& clock)
       : options(solve_options), tasks(clock, solve_options.threads) {}
@@ -50,7 +59,7 @@ struct SolveState {
 
   // Solves on the present row states and flips what is violated, while the number of violations falls, a few
   // times. True when none is left.
-  bool settle(double tolerance);
+  bool settle(double tolerance, const Settling& settling = {});
 
   // Moves one violated row to the state its violation asks for.
   void flip(int row);

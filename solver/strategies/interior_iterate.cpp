@@ -9,19 +9,7 @@
 namespace cleave {
 namespace {
 
-// Rows whose bounds are closer than this, in m/s or in roundings of the bounds, are fixed between them.
-constexpr double kFixedWidth = 1e-13, kFixedRoundings = 64 * std::numeric_limits<double>::epsilon();
-constexpr double kWarmShare = 0.1;    // warm impulses are used below this share of the residual without any
-constexpr double kStartEnergy = 30;   // products at the start, in mean energies w^2 / d of a row
-constexpr double kLeastSpeed = 1e-3;  // m/s, of a row at the start
-constexpr double kMostSpeed = 100;    // of the fastest row, likewise
-constexpr double kCentring = 0.3;     // share of the mean product that `centre` aims at
-constexpr int kCorrections = 2;       // centrality corrections of an iteration, at most
-constexpr double kLongStep = 0.95;    // that need none
-constexpr double kReach = 0.3;        // how much longer a step they aim at
-constexpr double kBand = 0.1;         // products within [target kBand, target / kBand] stay
-constexpr std::size_t kLanes = 4;     // running values side by side, for vector instructions
-constexpr double kLeastGain = 0.1;    // of kReach, for a correction to be kept
+constexpr std::size_t kLanes = 4;  // running values side by side, for vector instructions
 
 }  // namespace
 
@@ -29,14 +17,15 @@ void InteriorIterate::add_pairs(SolveState& state, int r, double speed) {
   const StepProblem& problem = state.step->problem();
   const double d = state.step->diagonal()[r], w = state.slack[r];
   const double lower = problem.lower[r], upper = problem.upper[r], width = upper - lower;
-  fixed_[r] =
-      d * width <= kFixedWidth || (std::isfinite(width) && width <= kFixedRoundings * std::abs(lower));
+  const double rounding = std::numeric_limits<double>::epsilon() * std::abs(lower);
+  fixed_[r] = d * width <= constants_.fixed_width_m_per_s ||
+              (std::isfinite(width) && width <= constants_.fixed_roundings * rounding);
   if (fixed_[r]) {
     state.impulse[r] = 0.5 * (lower + upper);
     return;
   }
   // The impulse itself moves inside, so that slacks start feasible even where the bounds are close together.
-  const double margin = std::min(speed / d, 0.25 * width);
+  const double margin = std::min(speed / d, constants_.inside_share * width);
   if (std::isfinite(lower)) state.impulse[r] = std::max(state.impulse[r], lower + margin);
   if (std::isfinite(upper)) state.impulse[r] = std::min(state.impulse[r], upper - margin);
   const auto add = [&](double sign, double bound) {
@@ -49,8 +38,7 @@ void InteriorIterate::add_pairs(SolveState& state, int r, double speed) {
   add(-1, upper);
 }
 
-// Impulses of the last step that are not nearly right lie close to the wrong bounds, which costs more
-// iterations than starting from none.
+// Impulses of the last step that are not nearly right cost more iterations than starting from none.
 void InteriorIterate::choose_impulses(SolveState& state) {
   const double warm = state.residual();
   kept_impulse_ = state.impulse;
@@ -58,7 +46,7 @@ void InteriorIterate::choose_impulses(SolveState& state) {
     state.impulse[r] = std::clamp(0.0, state.step->problem().lower[r], state.step->problem().upper[r]);
   }
   state.update_velocity();
-  if (kWarmShare * state.residual() < warm) return;
+  if (constants_.warm_share * state.residual() < warm) return;
   state.impulse = kept_impulse_;
   state.update_velocity();
 }
@@ -75,10 +63,11 @@ void InteriorIterate::start(SolveState& state) {
     energy += state.slack[r] * state.slack[r] / state.step->diagonal()[r];
     fastest = std::max(fastest, std::abs(state.slack[r]));
   }
-  energy *= kStartEnergy / std::max(m, 1);
+  energy *= constants_.start_energy / std::max(m, 1);
   for (int r = 0; r < m; ++r) {
-    const double speed = std::min(std::sqrt(energy * state.step->diagonal()[r]), kMostSpeed * fastest);
-    add_pairs(state, r, std::max(kLeastSpeed, speed));
+    const double speed =
+        std::min(std::sqrt(energy * state.step->diagonal()[r]), constants_.most_speed * fastest);
+    add_pairs(state, r, std::max(constants_.least_speed_m_per_s, speed));
   }
   for (std::vector<double>* v : {&now_.ds, &now_.dz, &now_.c, &inverse_s_, &inverse_z_, &gap_}) {
     v->assign(pairs_.size(), 0.0);
@@ -111,10 +100,12 @@ void InteriorIterate::find_direction(SolveState& state, Aim aim) {
 void InteriorIterate::set_products(Aim aim) {
   const double now = mean_product(0);
   if (aim == Aim::affine) target_ = 0;
-  if (aim == Aim::centre) target_ = kCentring * now;
+  if (aim == Aim::centre) target_ = constants_.centring * now;
   if (aim == Aim::mehrotra) {
     const double ratio = mean_product(largest_step_) / now;
-    target_ = ratio * ratio * ratio * now;
+    double share = 1;
+    for (int power = 0; power < constants_.target_power; ++power) share *= ratio;
+    target_ = share * now;
   }
   const double second_order = aim == Aim::mehrotra ? 1.0 : 0.0;
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
@@ -183,9 +174,9 @@ double InteriorIterate::mean_product(double step) const {
 }
 
 void InteriorIterate::correct_centrality(SolveState& state) {
-  const double low = kBand * target_, high = target_ / kBand;
-  for (int k = 0; k < kCorrections && largest_step_ < kLongStep; ++k) {
-    const double step = largest_step_, trial = std::min(1.0, step + kReach);
+  const double low = constants_.band * target_, high = target_ / constants_.band;
+  for (int k = 0; k < constants_.corrections && largest_step_ < constants_.long_step; ++k) {
+    const double step = largest_step_, trial = std::min(1.0, step + constants_.reach);
     now_.dlambda = state.dlambda;
     before_ = now_;
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
@@ -194,7 +185,7 @@ void InteriorIterate::correct_centrality(SolveState& state) {
       if (product > high) now_.c[p] += std::max(high - product, -high);
     }
     solve(state);
-    if (largest_step_ >= step + kLeastGain * (trial - step)) continue;
+    if (largest_step_ >= step + constants_.least_gain * (trial - step)) continue;
     std::swap(now_, before_);
     state.dlambda = now_.dlambda;
     measure_direction();

@@ -25,12 +25,15 @@
 #include <vector>
 
 #include "solver/solve_state.h"
+#include "solver/strategies/interior_constants.h"
 
 namespace cleave {
 
 class InteriorIterate {
  public:
   enum class Aim { affine, mehrotra, centre };
+
+  explicit InteriorIterate(const InteriorConstants& constants) : constants_(constants) {}
 
   // Impulses moved inside their bounds, slacks and multipliers to them.
   void start(SolveState& state);
@@ -79,6 +82,7 @@ class InteriorIterate {
   void solve(SolveState& state);
   void measure_direction();
 
+  InteriorConstants constants_;
   std::vector<Pair> pairs_;  // ascending row
   std::vector<char> fixed_;  // (m)
   std::vector<double> s_, z_;
