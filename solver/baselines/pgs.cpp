@@ -3,6 +3,7 @@
 // within the limit).
 #include "solver/baselines/baselines.h"
 #include "solver/gauss_seidel.h"
+#include "solver/impulse_set.h"
 
 namespace cleave {
 namespace {
@@ -13,6 +14,10 @@ class Pgs : public StepSolver {
   bool uses_partition() const override { return false; }
 
  private:
+  std::string refuse_set(const StepProblem& problem) override {
+    return find_set_refusal("solver", "pgs", problem);
+  }
+
   SolveSummary do_solve(const StepProblem& problem, std::span<const int>, Solution& solution) override {
     SolveSummary summary;
     summary.strategy = "pgs";

@@ -88,8 +88,7 @@ bool InteriorIterate::factor(SolveState& state, double delta) {
     state.weight[row] += z_[k] * inverse_s_[k];
   }
   for (std::size_t r = 0; r < fixed_.size(); ++r) state.weight[r] = fixed_[r] ? 0.0 : 1 / state.weight[r];
-  ++state.summary->factorizations;
-  return state.kernel->factor(state.weight, state.tasks);
+  return state.factor();
 }
 
 void InteriorIterate::find_direction(SolveState& state, Aim aim) {
@@ -123,7 +122,7 @@ void InteriorIterate::set_right_hand_side(SolveState& state) {
 void InteriorIterate::solve(SolveState& state) {
   set_right_hand_side(state);
   std::fill(state.f_v.begin(), state.f_v.end(), 0.0);
-  state.kernel->solve(state.f_v, state.f_r, state.dv, state.dlambda, state.tasks);
+  state.solve();
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     now_.ds[k] = pairs_[k].sign * state.dlambda[pairs_[k].row] + gap_[k];
   }
@@ -137,9 +136,10 @@ double InteriorIterate::rounding(SolveState& state) {
   set_right_hand_side(state);
   change_.resize(state.velocity.size());
   row_error_.resize(fixed_.size());
-  state.step->velocity(state.dlambda, change_);
+  state.step->velocity(state.step->set().in_rows(state.dlambda, state.row_impulse), change_);
   for (std::size_t c = 0; c < change_.size(); ++c) change_[c] -= state.step->problem().free_velocity[c];
   state.step->jacobian_times(change_, row_error_);
+  state.step->set().to_axes(row_error_);
   double worst = 0;
   for (std::size_t r = 0; r < fixed_.size(); ++r) {
     if (fixed_[r]) continue;

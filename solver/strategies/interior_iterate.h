@@ -20,6 +20,9 @@
 // primal-dual method for linear programming", Comput. Optim. Appl. 6, 1996; Friedlander and Orban, "A
 // primal-dual regularized interior-point method for convex quadratic programs", Math. Program. Comput. 4,
 // 2012.
+//
+// Rows are those along the axes of the impulse set (impulse_set.h): for a turned box the kernel gets the same
+// D as a 3x3 block.
 #pragma once
 
 #include <vector>

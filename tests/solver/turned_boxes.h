@@ -1,0 +1,25 @@
+// Problems whose friction boxes are turned in their tangent planes, and the same problems in scalar rows.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/step_problem.h"
+#include "tests/solver/seeded_random.h"
+
+namespace cleave {
+
+// Normal rows that their two friction rows follow.
+std::vector<int> contacts_of(const StepProblem& problem);
+
+// The problem with the boxes of most of its contacts turned by angles from the seed; warm impulses 0.
+StepProblem turn_boxes(StepProblem problem, std::uint64_t seed);
+
+// The same problem with intervals only: tangent rows (J, b) combined along the axes of their box.
+StepProblem in_turned_rows(const StepProblem& problem);
+
+// (m) Impulses of one problem as those of the other.
+std::vector<double> along_axes(const StepProblem& problem, std::span<const double> in_rows);
+std::vector<double> along_rows(const StepProblem& problem, std::span<const double> in_axes);
+
+}  // namespace cleave
