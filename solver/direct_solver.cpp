@@ -59,14 +59,16 @@ struct Link {
 class DirectSolver : public StepSolver {
  public:
   DirectSolver(std::string_view strategy, std::string_view kernel, bool splits, std::unique_ptr<Kernel> made,
-               const SolveOptions& options)
+               const SolveOptions& options, std::unique_ptr<Strategy> own)
       : strategy_(strategy),
         kernel_name_(kernel),
         splits_(splits),
         options_(options),
         clock_(options.threads),
         kernel_(std::move(made)),
-        state_(options, clock_) {}
+        state_(options, clock_) {
+    if (own != nullptr) links_.push_back({strategy, std::move(own)});
+  }
 
   bool uses_partition() const override { return splits_; }
 
@@ -245,15 +247,15 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const 
 }  // namespace
 
 std::unique_ptr<StepSolver> make_direct_solver(std::string_view strategy, std::string_view kernel,
-                                               const SolveOptions& options) {
+                                               const SolveOptions& options, std::unique_ptr<Strategy> own) {
   const auto strategy_row = std::ranges::find(
       strategy_table(), strategy, [](const auto& row) { return std::string_view(row.entry.name); });
   const auto kernel_row = std::ranges::find(kernel_table(), kernel,
                                             [](const auto& row) { return std::string_view(row.entry.name); });
   if (strategy_row == strategy_table().end() || kernel_row == kernel_table().end()) return nullptr;
   if (!runs_on(*strategy_row, *kernel_row)) return nullptr;
-  return std::make_unique<DirectSolver>(strategy, kernel_row->resolved, kernel_row->splits,
-                                        kernel_row->make(), options);
+  return std::make_unique<DirectSolver>(strategy_row->entry.name, kernel_row->resolved, kernel_row->splits,
+                                        kernel_row->make(), options, std::move(own));
 }
 
 }  // namespace cleave

@@ -5,11 +5,14 @@
 #include <string_view>
 
 #include "solver/step_solver.h"
+#include "solver/strategies/strategy.h"
 
 namespace cleave {
 
-// strategy and kernel are names of registry.h; nullptr when the pair does not exist.
+// strategy and kernel are names of registry.h; nullptr when the pair does not exist. own, where given, runs
+// in place of the registry's strategy of that name.
 std::unique_ptr<StepSolver> make_direct_solver(std::string_view strategy, std::string_view kernel,
-                                               const SolveOptions& options);
+                                               const SolveOptions& options,
+                                               std::unique_ptr<Strategy> own = nullptr);
 
 }  // namespace cleave
