@@ -1,6 +1,5 @@
 #include "solver/row_weights.h"
 
-#include <algorithm>
 #include <cassert>
 
 namespace cleave {
@@ -52,19 +51,6 @@ void WeightedRows::set(const StepProblem& problem, const RowWeights& weights) {
     assert(fits(problem, block));
     multiply_rows(block, true, 12, turned_jacobian_.data());
   }
-}
-
-std::span<const double> WeightedRows::along_basis(std::span<const double> x) {
-  if (blocks_.empty()) return x;
-  turned_.assign(x.begin(), x.end());
-  to_basis(blocks_, turned_);
-  return turned_;
-}
-
-void WeightedRows::multiply(std::span<double> x) const {
-  to_basis(blocks_, x);
-  for (std::size_t r = 0; r < x.size(); ++r) x[r] *= d_[r];
-  from_basis(blocks_, x);
 }
 
 }  // namespace cleave

@@ -6,12 +6,13 @@
 //     D_block = B diag(d) B^T,
 //
 // so that it is positive semidefinite whatever rounding does, and a stiff direction of a contact does not
-// drown a soft one: written out in nine numbers, a weight of 1e-9 beside one of 1e9 would be lost. With
-// x' = B^T x on the rows of a block and x' = x on the others, the system is one of scalar rows again,
+// drown a soft one: written out in nine numbers, a weight of 1e-9 beside one of 1e9 would be lost. For the
+// same reason right-hand sides and impulses of a block are numbers along its basis, f_r' = B^T f_r and
+// dlambda = B dlambda'. With J' = B^T J on its rows, and J' = J on others, the system is
 //
-//     M dv - J'^T dlambda' = f_v,     J' dv + diag(d)^-1 dlambda' = f_r',     dlambda = B dlambda',
+//     M dv - J'^T dlambda' = f_v,     J' dv + diag(d)^-1 dlambda' = f_r',
 //
-// which is how kernels that eliminate rows deal with a singular block.
+// where a block that is singular needs no inverse.
 #pragma once
 
 #include <array>
@@ -49,16 +50,14 @@ class WeightedRows {
 
   std::span<const double> d() const { return d_; }
   const double* jacobian() const { return jacobian_; }  // (m, 12) J'
-  // (m) x', which is x itself without blocks; valid until the next call.
-  std::span<const double> along_basis(std::span<const double> x);
-  void to_rows(std::span<double> x) const { from_basis(blocks_, x); }
-  void multiply(std::span<double> x) const;  // x <- D x
+  void to_basis(std::span<double> x) const { cleave::to_basis(blocks_, x); }
+  void from_basis(std::span<double> x) const { cleave::from_basis(blocks_, x); }
 
  private:
   std::span<const double> d_;
   std::span<const WeightBlock> blocks_;
   const double* jacobian_ = nullptr;
-  std::vector<double> turned_jacobian_, turned_;
+  std::vector<double> turned_jacobian_;
 };
 
 }  // namespace cleave

@@ -40,9 +40,7 @@ bool SolveState::factor() {
 }
 
 void SolveState::solve() {
-  step->set().to_rows(f_r);
   kernel->solve(f_v, f_r, dv, dlambda, tasks);
-  step->set().to_axes(dlambda);
 }
 
 void SolveState::states_from_impulses() {

@@ -2,8 +2,9 @@
 // row, and the steps that all strategies take on a kernel. Scratch only grows.
 //
 // Impulses, slacks, weights, right-hand sides and increments of rows are those along the axes of the impulse
-// set (impulse_set.h), where bounds are bounds of single numbers; kernels are called through factor() and
-// solve(), which turn them. Without turned boxes axes and rows are the same.
+// set (impulse_set.h), where bounds are bounds of single numbers. They are the bases of the blocks that
+// factor() hands the kernel, whose right-hand sides and increments are along them too. Without turned boxes
+// axes and rows are the same.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +47,7 @@ struct SolveState {
   // The kernel's factorisation for the weights; counted. False when it finds a non-positive pivot.
   bool factor();
 
-  // dv and dlambda from f_v and f_r by the kernel. f_r is turned into rows and stays so.
+  // dv and dlambda from f_v and f_r by the kernel.
   void solve();
 
   // Row states read off the impulses: at a bound exactly means bound, everything else free.

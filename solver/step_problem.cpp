@@ -130,7 +130,7 @@ std::string find_kind_error(const StepProblem& p, std::size_t r) {
 
 // Whether rows r + 1 and r + 2 are the friction rows of normal row r, between the same bodies.
 bool has_tangent_pair(const StepProblem& p, std::size_t r) {
-  if (p.row_kind[r] != RowKind::normal || r + 2 >= p.rhs.size()) return false;
+  if (r + 2 >= p.rhs.size()) return false;
   for (std::size_t k = r + 1; k <= r + 2; ++k) {
     if (p.row_kind[k] != RowKind::friction || p.friction_row[k] != static_cast<int>(r)) return false;
     if (p.row_body[2 * k] != p.row_body[2 * r] || p.row_body[2 * k + 1] != p.row_body[2 * r + 1])

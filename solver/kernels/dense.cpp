@@ -45,9 +45,12 @@ class DenseKernel : public Kernel {
     const auto size = [](auto s) { return static_cast<Eigen::Index>(s.size()); };
     const Eigen::Map<const Eigen::VectorXd> fv(f_v.data(), size(f_v)), fr(f_r.data(), size(f_r));
     Eigen::Map<Eigen::VectorXd> v(dv.data(), size(dv)), lambda(dlambda.data(), size(dlambda));
-    v = factor_.solve(fv + jacobian_.transpose() * times_d(fr));
-    const Eigen::VectorXd row_velocity = jacobian_ * v;
-    lambda = times_d(fr - row_velocity);
+    Eigen::VectorXd weighted = d_.cwiseProduct(fr);
+    turn(weighted, false);
+    v = factor_.solve(fv + jacobian_.transpose() * weighted);
+    Eigen::VectorXd row_velocity = jacobian_ * v;
+    turn(row_velocity, true);
+    lambda = d_.cwiseProduct(fr - row_velocity);
   }
 
   double local_mflop() const override {
@@ -72,15 +75,14 @@ class DenseKernel : public Kernel {
     }
   }
 
-  Eigen::VectorXd times_d(const Eigen::VectorXd& x) const {
-    Eigen::VectorXd result = scalar_d_.cwiseProduct(x);
+  // x <- B x, or B^T x, on the rows of the blocks.
+  void turn(Eigen::VectorXd& x, bool to_basis) const {
     for (const WeightBlock& block : blocks_) {
-      const Basis basis = basis_of(block);
-      const auto d = d_.segment(block.first_row, block.row_count).asDiagonal();
-      result.segment(block.first_row, block.row_count) =
-          basis * (d * (basis.transpose() * x.segment(block.first_row, block.row_count)));
+      Eigen::MatrixXd basis = basis_of(block);
+      if (to_basis) basis.transposeInPlace();
+      const Eigen::VectorXd turned = basis * x.segment(block.first_row, block.row_count);
+      x.segment(block.first_row, block.row_count) = turned;
     }
-    return result;
   }
 
   // M and J as dense matrices.

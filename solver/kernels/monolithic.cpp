@@ -36,14 +36,15 @@ class MonolithicKernel : public Kernel {
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override {
     StageTimer timer(tasks.clock(), Stage::solve);
-    std::copy(f_r.begin(), f_r.end(), weighted_.begin());
-    rows_.multiply(weighted_);
+    const std::span<const double> d = rows_.d();
+    for (std::size_t r = 0; r < d.size(); ++r) weighted_[r] = d[r] * f_r[r];
+    rows_.from_basis(weighted_);
     std::copy(f_v.begin(), f_v.end(), dv.begin());
     step_->add_jacobian_transpose(weighted_, dv);
     matrix_.cholesky().solve(dv);
     step_->jacobian_times(dv, dlambda);
-    for (std::size_t r = 0; r < f_r.size(); ++r) dlambda[r] = f_r[r] - dlambda[r];
-    rows_.multiply(dlambda);
+    rows_.to_basis(dlambda);
+    for (std::size_t r = 0; r < d.size(); ++r) dlambda[r] = d[r] * (f_r[r] - dlambda[r]);
   }
 
   double local_mflop() const override { return matrix_.cholesky().symbolic().factor_flops(0) * 1e-6; }

@@ -111,10 +111,11 @@ bool SchurBodiesKernel::factor(const RowWeights& weights, ParallelTasks& tasks) 
 void SchurBodiesKernel::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
                               std::span<double> dlambda, ParallelTasks& tasks) {
   const BlockCholesky& cholesky = matrix_.cholesky();
+  const std::span<const double> d = rows_.d();
   {
     StageTimer timer(tasks.clock(), Stage::solve);
-    std::copy(f_r.begin(), f_r.end(), weighted_.begin());
-    rows_.multiply(weighted_);
+    for (std::size_t r = 0; r < d.size(); ++r) weighted_[r] = d[r] * f_r[r];
+    rows_.from_basis(weighted_);
     std::copy(f_v.begin(), f_v.end(), by_node_.begin());
     step_->add_jacobian_transpose(weighted_, by_node_);
     cholesky.to_positions(by_node_, x_);
@@ -138,8 +139,8 @@ void SchurBodiesKernel::solve(std::span<const double> f_v, std::span<const doubl
   StageTimer timer(tasks.clock(), Stage::solve);
   cholesky.to_nodes(x_, dv);
   step_->jacobian_times(dv, dlambda);
-  for (std::size_t r = 0; r < f_r.size(); ++r) dlambda[r] = f_r[r] - dlambda[r];
-  rows_.multiply(dlambda);
+  rows_.to_basis(dlambda);
+  for (std::size_t r = 0; r < d.size(); ++r) dlambda[r] = d[r] * (f_r[r] - dlambda[r]);
 }
 
 }  // namespace

@@ -8,8 +8,7 @@
 // Source: Peiret, Andrews, Koevecses, Kry, Teichmann, "Schur complement-based substructuring of stiff
 // multibody systems with contact", ACM TOG 2019; Liu and Andrews 2022, section 2. With H_i = L_i L_i^T each
 // part keeps Y_i = L_i^-1 J_ci^T, so that J_ci H_i^-1 J_ci^T = Y_i^T Y_i and one half of every later solve is
-// a product with Y_i. A 3x3 block of D, which may be singular, enters by the scalar rows along its basis
-// (row_weights.h): J and f_r above are those rows, and only the impulses are turned back at the end.
+// a product with Y_i. On the rows of a 3x3 block of D, J is J' along its basis (row_weights.h).
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -305,10 +304,6 @@ void SchurRowsKernel::expand(int i, std::span<const double> f_r, std::span<doubl
 
 void SchurRowsKernel::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
                             std::span<double> dlambda, ParallelTasks& tasks) {
-  {
-    StageTimer timer(tasks.clock(), Stage::solve);
-    f_r = rows_.along_basis(f_r);
-  }
   tasks.run(Stage::solve, split_.part_count, [&](int i) { reduce(i, f_v, f_r); });
   {
     StageTimer timer(tasks.clock(), Stage::solve);
@@ -325,8 +320,6 @@ void SchurRowsKernel::solve(std::span<const double> f_v, std::span<const double>
     }
   }
   tasks.run(Stage::solve, split_.part_count, [&](int i) { expand(i, f_r, dv, dlambda); });
-  StageTimer timer(tasks.clock(), Stage::solve);
-  rows_.to_rows(dlambda);
 }
 
 double SchurRowsKernel::local_mflop() const {

@@ -1,14 +1,15 @@
-// Boxes turned in their tangent planes, from the problem to the answer: the interior point through every
-// kernel against the same problem in turned rows, what refuses them, and what the judge says.
+// Boxes turned in their tangent planes: the interior point through every kernel against the same problem in
+// turned rows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 
-#include "solver/proximal_step.h"
 #include "solver/registry.h"
 #include "solver/step_solver.h"
+#include "solver/strategies/interior_iterate.h"
 #include "tests/solver/allocation_counter.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/solver_checks.h"
@@ -16,28 +17,6 @@
 
 namespace cleave {
 namespace {
-
-struct Answer {
-  Solution solution;
-  SolveSummary summary;
-};
-
-Answer solve(const std::string& solver, const StepProblem& problem, const std::vector<int>& parts) {
-  Answer answer{cold_start(problem), {}};
-  answer.summary = make_step_solver(solver, {})->solve(problem, parts, answer.solution);
-  return answer;
-}
-
-StepProblem make_turned_pile(int seed, double cfm) {
-  return turn_boxes(make_pile(seed, {.columns = 3, .rows = 2, .layers = 3, .cfm = cfm, .mass_ratio = 10}),
-                    seed);
-}
-
-double largest_difference(std::span<const double> a, std::span<const double> b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
-}
 
 // Of the tangent impulses along the axes of turned boxes, those at a bound that is not zero.
 int count_at_bounds(const StepProblem& problem, std::span<const double> impulse) {
@@ -131,6 +110,30 @@ TEST_P(TurnedBoxTest, AutoTakesTheInteriorPointAndSaysWhy) {
   EXPECT_EQ(solve("auto:" + GetParam(), in_turned_rows(problem), parts).summary.strategy, "pivot");
 }
 
+// What rounding leaves of a direction is measured along the axes too.
+TEST_P(TurnedBoxTest, DirectionsSolveTheirOwnSystem) {
+  const StepProblem problem = make_turned_pile(4, 1e-5);
+  const std::vector<int> parts = sliced_parts(problem.body_count(), 3);
+  StageClock clock;
+  clock.start();
+  PreparedStep step;
+  step.prepare(problem);
+  SolveState state(SolveOptions{}, clock);
+  SolveSummary summary;
+  const auto row =
+      std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return k.entry.name; });
+  const std::unique_ptr<Kernel> kernel = row->make();
+  kernel->analyze(step, parts, state.tasks);
+  const std::vector<double> cold(problem.row_count(), 0.0);
+  state.begin(step, *kernel, summary, cold);
+  InteriorIterate iterate{InteriorConstants{}};
+  iterate.start(state);
+  ASSERT_TRUE(iterate.factor(state, kFactoredCompliance));
+  iterate.find_direction(state, InteriorIterate::Aim::affine);
+  EXPECT_GT(iterate.error(state), 1e-3);
+  EXPECT_LE(iterate.rounding(state), 1e-10);
+}
+
 std::vector<std::string> kernel_names() {
   std::vector<std::string> names;
   for (const KernelRow& row : kernel_table()) names.emplace_back(row.entry.name);
@@ -142,132 +145,6 @@ INSTANTIATE_TEST_SUITE_P(Kernels, TurnedBoxTest, testing::ValuesIn(kernel_names(
   std::ranges::replace(name, '-', '_');
   return name;
 });
-
-void expect_refusal(const std::string& solver, const std::string& named, const StepProblem& problem) {
-  const Answer answer = solve(solver, problem, single_part(problem.body_count()));
-  EXPECT_EQ(answer.summary.status, SolveStatus::refused) << solver;
-  EXPECT_TRUE(answer.summary.message.starts_with(named + " takes an interval for every row"))
-      << answer.summary.message;
-  EXPECT_NE(answer.summary.message.find("box_angle_rad["), std::string::npos) << answer.summary.message;
-  EXPECT_EQ(answer.summary.message.find('\n'), std::string::npos);
-  EXPECT_TRUE(same_bytes(answer.solution.impulse, cold_start(problem).impulse)) << solver;
-  StepProblem straight = problem;  // which nobody refuses
-  straight.box_angle_rad.clear();
-  EXPECT_NE(solve(solver, straight, single_part(problem.body_count())).summary.status, SolveStatus::refused);
-}
-
-TEST(TurnedBoxRefusalTest, EveryOtherStrategyRefusesByName) {
-  const StepProblem problem = make_turned_pile(1, 1e-1);
-  int refused = 0;
-  for (const StrategyRow& strategy : strategy_table()) {
-    const std::string name = strategy.entry.name;
-    if (name == "interior-point" || name == "auto") continue;
-    for (const KernelRow& kernel : kernel_table()) {
-      if (!runs_on(strategy, kernel)) continue;
-      expect_refusal(name + ":" + kernel.entry.name, "strategy " + name, problem);
-      ++refused;
-    }
-  }
-  EXPECT_GE(refused, 11);
-}
-
-TEST(TurnedBoxRefusalTest, EveryBaselineRefusesByName) {
-  const StepProblem problem = make_turned_pile(1, 1e-1);
-  int refused = 0;
-  for (const SolverRow& row : solver_table()) {
-    if (row.make == nullptr) continue;
-    expect_refusal(row.entry.name, "solver " + std::string(row.entry.name), problem);
-    ++refused;
-  }
-  EXPECT_GE(refused, 1);
-}
-
-// A solver of another folder that says nothing about sets.
-class PlainSolver : public StepSolver {
- public:
-  bool uses_partition() const override { return false; }
-  bool called = false;
-
- private:
-  SolveSummary do_solve(const StepProblem&, std::span<const int>, Solution&) override {
-    called = true;
-    return {};
-  }
-};
-
-TEST(TurnedBoxRefusalTest, SolversThatSayNothingRefuse) {
-  const StepProblem problem = make_turned_pile(1, 1e-5);
-  PlainSolver solver;
-  Solution solution = cold_start(problem);
-  const SolveSummary summary = solver.solve(problem, {}, solution);
-  EXPECT_EQ(summary.status, SolveStatus::refused);
-  EXPECT_TRUE(summary.message.starts_with("this solver takes an interval")) << summary.message;
-  EXPECT_FALSE(solver.called);
-  EXPECT_EQ(solver.solve(make_pile(1, {}), {}, solution).status, SolveStatus::ok);
-}
-
-TEST(TurnedBoxJudgeTest, AcceptsTheAnswerOfTheTurnedRowsAndNothingNearIt) {
-  int tried = 0;
-  for (int seed = 0; seed < 5; ++seed) {
-    const StepProblem problem = make_turned_pile(seed, 1e-4), turned = in_turned_rows(problem);
-    const Answer answer = solve("dense", turned, {});
-    ASSERT_TRUE(is_exact(turned, answer.summary, answer.solution));
-    const std::vector<double> right = along_rows(problem, answer.solution.impulse);
-    EXPECT_TRUE(judge(problem, right).exact);
-    EXPECT_FALSE(judge(problem, answer.solution.impulse).exact) << "axes taken for rows";
-    StepProblem mirrored = problem;
-    for (double& angle : mirrored.box_angle_rad) angle = -angle;
-    EXPECT_FALSE(judge(mirrored, right).exact);
-    for (const int contact : contacts_of(problem)) {
-      for (int k = 0; k < 3; ++k) {
-        std::vector<double> wrong = right;
-        wrong[contact + k] += 1e-6;
-        EXPECT_FALSE(judge(problem, wrong).exact) << "row " << contact + k;
-        ++tried;
-      }
-    }
-  }
-  EXPECT_GT(tried, 200);
-}
-
-TEST(TurnedBoxJudgeTest, MeasuresWhatItMeasuresOfTheTurnedRows) {
-  for (int seed = 0; seed < 5; ++seed) {
-    const StepProblem problem = make_turned_pile(seed, 1e-5), turned = in_turned_rows(problem);
-    SeededRandom random(seed);
-    std::vector<double> impulse(problem.row_count());
-    for (double& entry : impulse) entry = random.uniform(-0.1, 0.1);
-    const std::vector<double> axes = along_axes(problem, impulse);
-    const std::vector<double> actual = row_residuals(problem, impulse),
-                              expected = row_residuals(turned, axes);
-    EXPECT_LE(largest_difference(actual, expected), 1e-12);
-    const ResidualReport report = judge(problem, impulse), of_turned = judge(turned, axes);
-    EXPECT_NEAR(report.residual_friction_m_per_s, of_turned.residual_friction_m_per_s, 1e-12);
-    EXPECT_NEAR(report.energy_excess_j, of_turned.energy_excess_j, 1e-10);
-  }
-}
-
-// Steps of the proximal method are problems of the same kind, with the slack of the original at their centre.
-TEST(TurnedBoxProximalTest, StepsKeepTheirBoxesAndTheSlackAtTheCentre) {
-  for (int seed = 0; seed < 5; ++seed) {
-    const StepProblem problem = make_turned_pile(seed, 0);
-    PreparedStep step, proximal_step;
-    step.prepare(problem);
-    SeededRandom random(seed);
-    std::vector<double> centre(problem.row_count());
-    for (double& entry : centre) entry = random.uniform(-1, 1);
-    ProximalStep proximal;
-    proximal.begin(step, centre, 1e-3);
-    ASSERT_EQ(find_problem_error(proximal.problem()), "");
-    const std::vector<double> in_rows = along_rows(problem, centre);
-    proximal_step.prepare(proximal.problem());
-    std::vector<double> velocity(problem.free_velocity.size()), slack(centre.size()), of_copy(centre.size());
-    step.velocity(in_rows, velocity);
-    step.slack(velocity, in_rows, slack);
-    proximal_step.slack(velocity, in_rows, of_copy);
-    EXPECT_LE(largest_difference(slack, of_copy), 1e-13);
-    EXPECT_GT(largest_difference(problem.rhs, proximal.problem().rhs), 1e-5);
-  }
-}
 
 }  // namespace
 }  // namespace cleave

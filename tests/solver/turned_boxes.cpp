@@ -1,6 +1,10 @@
 #include "tests/solver/turned_boxes.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "tests/solver/problem_makers.h"
+#include "tests/solver/solver_checks.h"
 
 namespace cleave {
 namespace {
@@ -34,8 +38,14 @@ StepProblem turn_boxes(StepProblem problem, std::uint64_t seed) {
   problem.box_angle_rad.assign(problem.row_count(), 0.0);
   for (const int r : contacts_of(problem)) {
     if (random.chance(0.8)) problem.box_angle_rad[r] = random.uniform(-3, 3);
+    for (int k = r + 1; k <= r + 2; ++k) problem.rhs[k] = random.uniform(-0.02, 0.02);
   }
   return problem;
+}
+
+StepProblem make_turned_pile(std::uint64_t seed, double cfm) {
+  return turn_boxes(make_pile(seed, {.columns = 3, .rows = 2, .layers = 3, .cfm = cfm, .mass_ratio = 10}),
+                    seed);
 }
 
 StepProblem in_turned_rows(const StepProblem& problem) {
@@ -56,6 +66,18 @@ std::vector<double> along_rows(const StepProblem& problem, std::span<const doubl
   std::vector<double> result(in_axes.begin(), in_axes.end());
   turn_pairs(problem, false, 1, result.data());
   return result;
+}
+
+Answer solve(const std::string& solver, const StepProblem& problem, const std::vector<int>& parts) {
+  Answer answer{cold_start(problem), {}};
+  answer.summary = make_step_solver(solver, {})->solve(problem, parts, answer.solution);
+  return answer;
+}
+
+double largest_difference(std::span<const double> a, std::span<const double> b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
 }
 
 }  // namespace cleave
