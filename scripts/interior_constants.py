@@ -28,11 +28,11 @@ class Total:
         self.above_limit += row["exact"] != "1"
         self.worst_m_per_s = max(self.worst_m_per_s, float(row["residual_m_per_s"]))
 
-    def change(self, default):
-        return self.factorizations / default.factorizations - 1
+    def ratio(self, default):
+        return self.factorizations / default.factorizations
 
     def is_worse(self, default):
-        return self.above_limit > default.above_limit or self.change(default) >= NOTHING
+        return self.above_limit > default.above_limit or self.ratio(default) >= 1 + NOTHING
 
 
 def totals(text):
@@ -66,7 +66,7 @@ def buying_nothing(found):
 
 def _cell(total, default):
     text = f"off ({total.value})" if total.kind == "off" else total.value
-    text += f": {total.factorizations} ({100 * total.change(default):+.1f} %)"
+    text += f": {total.factorizations} ({total.ratio(default):.3f})"
     for name, of_default, count in (("proximal", default.proximal, total.proximal),
                                     ("above the limit", default.above_limit, total.above_limit)):
         text += f", {count} {name}" if count != of_default else ""
@@ -79,7 +79,7 @@ def markdown(found):
              f"of one; {default.proximal} proximal, {default.above_limit} above the limit, worst residual "
              f"{default.worst_m_per_s:.1e} m/s. Proximal: the first attempt ended above the limit, and proximal steps "
              "followed; shown where the number differs.", "",
-             "| constant | value tried: factorisations (change) |", "| --- | --- |"]
+             "| constant | value tried: factorisations (over those as it is) |", "| --- | --- |"]
     lines += [f"| `{name}` | {'; '.join(_cell(total, default) for total in values)} |" for name, values in constants.items()]
     nothing = ", ".join(f"`{name}`" for name in buying_nothing(found)) or "none"
-    return "\n".join([*lines, "", f"Buys nothing here (less than {100 * NOTHING:.0f} % and no problem): {nothing}."])
+    return "\n".join([*lines, "", f"Buys nothing here (less than {NOTHING:g} of the factorisations, and no problem): {nothing}."])

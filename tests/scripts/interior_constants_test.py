@@ -1,8 +1,10 @@
 """scripts/ablate_interior_point with stand-ins for the programs it runs, and its tables."""
 import csv
+import re
 import unittest
 
 from stand_in import StandInCase
+from synthetic import ROOT
 
 import interior_constants
 
@@ -58,10 +60,10 @@ class AblateInteriorPointTest(StandInCase):
         self.assertEqual(len(rows), 6 * 16)
         self.assertEqual(rows[-1]["problem"], "ladder_loop_cfm_0/ladder_loop_step000320.h5")
         self.assertIn("As it is: 160 factorisations over 16 problems, at most 10 of one; 0 proximal, 0 above the limit", result.stdout)
-        self.assertIn("| `useful` | off (0): 176 (+10.0 %) |", result.stdout)
-        self.assertIn("| `safe` | off (0): 160 (+0.0 %), 1 proximal, 1 above the limit |", result.stdout)
-        self.assertIn("| `shape` | 1: 160 (+0.0 %); 4: 176 (+10.0 %) |", result.stdout)
-        self.assertTrue(result.stdout.endswith("(less than 1 % and no problem): `harmful`.\n"), result.stdout)
+        self.assertIn("| `useful` | off (0): 176 (1.100) |", result.stdout)
+        self.assertIn("| `safe` | off (0): 160 (1.000), 1 proximal, 1 above the limit |", result.stdout)
+        self.assertIn("| `shape` | 1: 160 (1.000); 4: 176 (1.100) |", result.stdout)
+        self.assertTrue(result.stdout.endswith("(less than 0.01 of the factorisations, and no problem): `harmful`.\n"), result.stdout)
 
     def test_the_constants_asked_for_are_passed_on(self):
         self.run_it("--scene", "log_tower", "--cfm", "0", "--constant", "reach,band")
@@ -73,6 +75,22 @@ class AblateInteriorPointTest(StandInCase):
         said = self.run_it("--scene", "log_tower", "--cfm", "0", code=1, stand_in_code=1).stderr.splitlines()
         self.assertIn("exit code 1: interior_point_benchmark: no", said[-1])
         self.assertFalse((self.directory / "out" / "interior_point.csv").exists())
+
+
+class DocumentTest(unittest.TestCase):
+
+    def setUp(self):
+        self.header = (ROOT / "solver" / "strategies" / "interior_constants.h").read_text()
+        section = (ROOT / "solver" / "README.md").read_text().partition("## The interior point's constants")[2]
+        self.rows = dict(re.findall(r"^\| `(\w+)` \| (.*) \|$", section.partition("\n## ")[0], re.M))
+
+    def test_the_readme_lists_every_constant_of_the_struct(self):
+        self.assertEqual(list(self.rows), re.findall(r"^  (?:double|int) (\w+) = ", self.header, re.M))
+
+    def test_header_and_readme_give_the_same_counts(self):
+        found = re.findall(r"  // ((?:off|[\d.e-]+)[ :].*)\.\n  (?:double|int) (\w+) = ", self.header)
+        without_change = {name: re.sub(r" \([\d.]+\)(?=[,;]|$)", "", text) for name, text in self.rows.items()}
+        self.assertEqual({name: counts for counts, name in found}, without_change)
 
 
 class TotalsTest(unittest.TestCase):
