@@ -51,6 +51,23 @@ TEST(TurnedBoxJudgeTest, MeasuresWhatItMeasuresOfTheTurnedRows) {
   }
 }
 
+// What strategies scale by and end on.
+TEST(TurnedBoxStepTest, DiagonalAndResidualAreThoseOfTheTurnedRows) {
+  for (int seed = 0; seed < 5; ++seed) {
+    const StepProblem problem = make_turned_pile(seed, 1e-3), turned = in_turned_rows(problem);
+    PreparedStep step, expected;
+    step.prepare(problem);
+    expected.prepare(turned);
+    EXPECT_LE(largest_difference(step.diagonal(), expected.diagonal()), 1e-12);
+    EXPECT_NEAR(step.least_relative_compliance(), expected.least_relative_compliance(), 1e-12);
+    SeededRandom random(seed);
+    std::vector<double> impulse(problem.row_count()), slack(problem.row_count());
+    for (double& entry : impulse) entry = random.uniform(-0.1, 0.1);
+    for (double& entry : slack) entry = random.uniform(-1, 1);
+    EXPECT_NEAR(step.residual(impulse, slack), expected.residual(impulse, slack), 1e-12);
+  }
+}
+
 // Steps of the proximal method are problems of the same kind, with the slack of the original at their centre.
 TEST(TurnedBoxProximalTest, StepsKeepTheirBoxesAndTheSlackAtTheCentre) {
   for (int seed = 0; seed < 5; ++seed) {
