@@ -81,6 +81,8 @@ void check(const SceneParameter& parameter, std::string_view text) {
       return;
     case Type::choice:
       return check_choice(parameter, text);
+    case Type::text:
+      return;
   }
 }
 
@@ -115,11 +117,20 @@ SceneSettings make_scene_settings(const SceneEntry& scene, const std::map<std::s
   std::map<std::string, std::string> values;
   for (const SceneParameter& parameter : scene.parameters) {
     const auto found = given.find(parameter.name);
+    if (found == given.end() && parameter.default_value == nullptr)
+      throw std::invalid_argument(option(parameter.name) + ": is required by scene " + quoted(scene.name) +
+                                  ": " + parameter.help);
     const std::string& value = values[parameter.name] =
         found == given.end() ? parameter.default_value : found->second;
     check(parameter, value);
   }
-  return SceneSettings(std::move(values));
+  SceneSettings settings(std::move(values));
+  if (scene.check != nullptr) scene.check(settings);
+  return settings;
+}
+
+std::string scene_content_id(const SceneEntry& scene, const SceneSettings& settings) {
+  return scene.content_id == nullptr ? "" : scene.content_id(settings);
 }
 
 }  // namespace cleave

@@ -18,10 +18,10 @@ namespace cleave {
 // One parameter of a scene, e.g. --bodies 200. Numbers carry a range, choices a list, number lists
 // ("10,100,1000") the range of each number.
 struct SceneParameter {
-  enum class Type { integer, number, number_list, choice };
+  enum class Type { integer, number, number_list, choice, text };
   const char* name;  // option name without dashes: "bodies"
   Type type;
-  const char* default_value;  // as text
+  const char* default_value;  // as text; null: must be given
   double min;                 // allowed range of numbers, inclusive
   double max;
   std::vector<std::string> choices;  // of a choice
@@ -51,6 +51,8 @@ struct SceneContent {
   // Corners (k, 3) of convex geoms in their own frames, by geom index; ODE does not give them back. Valid as
   // long as the scene lives.
   std::map<int, std::span<const dReal>> convex_corners;
+  // Name of the group that each body belongs to ("" for none); empty for a scene that names no groups.
+  std::vector<std::string> body_group;
 };
 
 class Scene {
@@ -70,6 +72,11 @@ struct SceneEntry {
   const char* reference;
   std::vector<SceneParameter> parameters;
   std::unique_ptr<Scene> (*make)();
+  // Of a scene whose content lies outside the program, null for all others. check throws
+  // std::invalid_argument with one line; content_id is a fingerprint of the content, which does not depend on
+  // where it lies.
+  void (*check)(const SceneSettings&) = nullptr;
+  std::string (*content_id)(const SceneSettings&) = nullptr;
 };
 
 std::span<const SceneEntry> scenes();
@@ -78,5 +85,8 @@ std::span<const SceneEntry> scenes();
 // line naming the option, the value and the allowed range or choices; an option the scene does not have names
 // those it has.
 SceneSettings make_scene_settings(const SceneEntry& scene, const std::map<std::string, std::string>& given);
+
+// What the identity of a run needs besides the settings: "" for a scene that is all in the program.
+std::string scene_content_id(const SceneEntry& scene, const SceneSettings& settings);
 
 }  // namespace cleave

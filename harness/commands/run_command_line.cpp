@@ -34,7 +34,8 @@ void declare_scene_options(CLI::App& app, std::map<std::string, std::string>& gi
     for (const SceneParameter& parameter : scene.parameters) {
       std::string& text = help[parameter.name];
       if (text.empty()) text = parameter.help;
-      text += std::string("; ") + scene.name + " (" + parameter.default_value + ")";
+      const char* const value = parameter.default_value == nullptr ? "required" : parameter.default_value;
+      text += std::string("; ") + scene.name + " (" + value + ")";
     }
   }
   for (const auto& [name, text] : help) {

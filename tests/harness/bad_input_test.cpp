@@ -29,6 +29,11 @@ void expect_refused(const Arguments& arguments, const Arguments& pieces, const f
   EXPECT_TRUE(fs::is_empty(directory)) << what;
 }
 
+std::string allowed_text(const SceneParameter& parameter) {
+  if (parameter.type == SceneParameter::Type::text) return "allowed: ";
+  return parameter.type == SceneParameter::Type::choice ? parameter.choices[0] : "[";
+}
+
 Arguments bad_values(const SceneParameter& parameter) {
   switch (parameter.type) {
     case SceneParameter::Type::integer:
@@ -39,6 +44,8 @@ Arguments bad_values(const SceneParameter& parameter) {
       return {"-1", "nan", "inf", "heavy"};
     case SceneParameter::Type::choice:
       return {"no-such-choice"};
+    case SceneParameter::Type::text:
+      return {"no/such/file"};
   }
   return {};
 }
@@ -49,10 +56,8 @@ TEST(BadSceneOption, IsOneLineThatNamesOptionValueAndRange) {
     for (const SceneParameter& parameter : scene.parameters)
       for (const std::string& value : bad_values(parameter)) {
         const std::string option = "--" + std::string(parameter.name);
-        const std::string allowed =
-            parameter.type == SceneParameter::Type::choice ? parameter.choices[0] : std::string("[");
         expect_refused({"run", "--scene", scene.name, option, value, "--out", directory / "out"},
-                       {option + ": ", value, allowed}, directory.path());
+                       {option + ": ", value, allowed_text(parameter)}, directory.path());
       }
 }
 

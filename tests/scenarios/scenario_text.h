@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenarios/scene.h"
+#include "shipped_scenes.h"
 
 namespace cleave {
 
@@ -16,6 +17,7 @@ inline std::string number_text(double value) {
 }
 
 inline std::vector<std::string> bad_values(const SceneParameter& parameter) {
+  if (parameter.type == SceneParameter::Type::text) return {"", " ", "no/such/file", "/"};
   std::vector<std::string> values = {"", " ", "nonsense", "1x", " 1", "nan", "inf", "-inf", "-1", "1e400"};
   if (parameter.type == SceneParameter::Type::choice) return values;
   values.push_back(number_text(parameter.min - 1));
@@ -25,8 +27,9 @@ inline std::vector<std::string> bad_values(const SceneParameter& parameter) {
   return values;
 }
 
-// The ends of the range, or every choice.
+// The ends of the range, or every choice, or a file that is there.
 inline std::vector<std::string> extreme_values(const SceneParameter& parameter) {
+  if (parameter.type == SceneParameter::Type::text) return {shipped_file("pile")};
   if (parameter.type == SceneParameter::Type::choice) return parameter.choices;
   return {number_text(parameter.min), number_text(parameter.max)};
 }

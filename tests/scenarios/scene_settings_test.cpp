@@ -2,6 +2,7 @@
 
 #include "scenario_text.h"
 #include "scene_world.h"
+#include "shipped_scenes.h"
 
 namespace cleave {
 namespace {
@@ -38,13 +39,20 @@ TEST(SceneSettings, TextsNameOptionValueAndRange) {
 }
 
 TEST(SceneSettings, DefaultsOfEverySceneAreComplete) {
-  for (const SceneEntry& scene : scenes()) {
-    const SceneSettings settings = make_scene_settings(scene, {});
-    EXPECT_EQ(settings.values().size(), scene.parameters.size()) << scene.name;
-    for (const SceneParameter& parameter : scene.parameters)
-      EXPECT_EQ(settings.text(parameter.name), parameter.default_value)
-          << scene.name << " --" << parameter.name;
+  for (const ShippedScene& scene : shipped_scenes()) {
+    const SceneSettings settings = make_scene_settings(*scene.entry, scene.given);
+    EXPECT_EQ(settings.values().size(), scene.entry->parameters.size()) << scene.name;
+    for (const SceneParameter& parameter : scene.entry->parameters) {
+      const std::string wanted =
+          parameter.default_value ? parameter.default_value : scene.given.at(parameter.name);
+      EXPECT_EQ(settings.text(parameter.name), wanted) << scene.name << " --" << parameter.name;
+    }
   }
+}
+
+TEST(SceneSettings, AParameterWithoutDefaultMustBeGiven) {
+  EXPECT_EQ(error_of(scene_named("file"), {}),
+            "--path: is required by scene 'file': scene file; see scenarios/FILE_SCENES.md");
 }
 
 TEST(SceneSettings, GivenValuesAreRead) {

@@ -1,0 +1,4 @@
+// Fingerprints of data.
+#pragma once
+
+#include "harness/hash.h"

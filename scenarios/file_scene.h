@@ -1,0 +1,22 @@
+// A scene that is written in a file instead of C++; FILE_SCENES.md describes the format.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scenarios/scene.h"
+
+namespace cleave {
+
+std::vector<SceneParameter> file_scene_parameters();  // --path
+
+std::unique_ptr<Scene> make_file_scene();
+
+// Reads and checks the file. Throws std::invalid_argument with one line that names file, line and key.
+void check_file_scene(const SceneSettings& settings);
+
+// 16 hexadecimal digits: FNV-1a-64 of the file's bytes.
+std::string file_scene_content_id(const SceneSettings& settings);
+
+}  // namespace cleave
