@@ -209,7 +209,7 @@ const std::string kFourBoxes =
     "grid = { count = [4, 1, 1], spacing_m = [2, 0, 0] }\n"
     "[[body]]\ngroup = 'top'\nshape = 'box'\nedges_m = [1, 1, 1]\nmass_kg = 1\nposition_m = [0, 0, 5]\n";
 
-TEST(FileScene, EveryJointIsTheBuildersOwn) {
+TEST(FileScene, EveryJointIsTheOneMadeByHand) {
   SceneWorld file = written(kFourBoxes + R"(
 [[joint]]
 kind = "ball"
@@ -235,19 +235,27 @@ axis = [0, 1, 0]
 )");
   SceneWorld same = written(kFourBoxes);
   const std::vector<dBodyID>& b = same.content().bodies;
-  SceneBuilder builder(dBodyGetWorld(b[0]), nullptr);
-  builder.add_ball_joint(b[0], b[1], {-2, 0.1, 0});
-  builder.add_hinge_joint(b[1], b[2], {0, 0.2, 0}, {1, 2, 2});
-  builder.add_slider_joint(b[3], b[2], {3, 4, 0});
-  builder.add_fixed_joint(b[3], b[4]);
-  builder.add_hinge_joint(b[4], nullptr, {0, 0, 6}, {0, 1, 0});
   SceneContent by_hand = same.content();
-  by_hand.joints = builder.take().joints;
+  const dWorldID world = dBodyGetWorld(b[0]);
+  const auto join = [&](dJointID joint, dBodyID first, dBodyID second) {
+    dJointAttach(joint, first, second);
+    by_hand.joints.push_back(joint);
+    return joint;
+  };
+  dJointSetBallAnchor(join(dJointCreateBall(world, nullptr), b[0], b[1]), -2, 0.1, 0);
+  const dJointID hinge = join(dJointCreateHinge(world, nullptr), b[1], b[2]);
+  dJointSetHingeAnchor(hinge, 0, 0.2, 0);
+  dJointSetHingeAxis(hinge, 1, 2, 2);
+  dJointSetSliderAxis(join(dJointCreateSlider(world, nullptr), b[3], b[2]), 3, 4, 0);
+  dJointSetFixed(join(dJointCreateFixed(world, nullptr), b[3], b[4]));
+  const dJointID door = join(dJointCreateHinge(world, nullptr), b[4], nullptr);
+  dJointSetHingeAnchor(door, 0, 0, 6);
+  dJointSetHingeAxis(door, 0, 1, 0);
   ASSERT_EQ(file.content().joints.size(), 5u);
   EXPECT_EQ(snapshot(file.content()), snapshot(by_hand));
-  for (SceneWorld* world : {&file, &same}) {
+  for (SceneWorld* stepped : {&file, &same}) {
     dRandSetSeed(1);  // QuickStep draws from it
-    for (int step = 0; step < 30; ++step) world->step(step, 20);
+    for (int step = 0; step < 30; ++step) stepped->step(step, 20);
   }
   EXPECT_EQ(snapshot(file.content()), snapshot(by_hand));
   EXPECT_LT(position(file.content().bodies[0])[2], -0.1);
