@@ -79,8 +79,6 @@ std::vector<SceneParameter> file_scene_parameters() {
 
 std::unique_ptr<Scene> make_file_scene() { return std::make_unique<FileScene>(); }
 
-void check_file_scene(const SceneSettings& settings) { description(settings); }
-
 std::string file_scene_content_id(const SceneSettings& settings) { return description(settings).content_id; }
 
 }  // namespace cleave

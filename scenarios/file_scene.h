@@ -13,10 +13,8 @@ std::vector<SceneParameter> file_scene_parameters();  // --path
 
 std::unique_ptr<Scene> make_file_scene();
 
-// Reads and checks the file. Throws std::invalid_argument with one line that names file, line and key.
-void check_file_scene(const SceneSettings& settings);
-
-// 16 hexadecimal digits: FNV-1a-64 of the file's bytes.
+// FNV-1a-64 of the file's bytes, 16 hexadecimal digits. Reads and checks the file: throws
+// std::invalid_argument with one line that names file, line and key.
 std::string file_scene_content_id(const SceneSettings& settings);
 
 }  // namespace cleave

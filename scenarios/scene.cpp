@@ -125,7 +125,7 @@ SceneSettings make_scene_settings(const SceneEntry& scene, const std::map<std::s
     check(parameter, value);
   }
   SceneSettings settings(std::move(values));
-  if (scene.check != nullptr) scene.check(settings);
+  scene_content_id(scene, settings);
   return settings;
 }
 

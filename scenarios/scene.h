@@ -72,10 +72,7 @@ struct SceneEntry {
   const char* reference;
   std::vector<SceneParameter> parameters;
   std::unique_ptr<Scene> (*make)();
-  // Of a scene whose content lies outside the program, null for all others. check throws
-  // std::invalid_argument with one line; content_id is a fingerprint of the content, which does not depend on
-  // where it lies.
-  void (*check)(const SceneSettings&) = nullptr;
+  // Of a scene whose content lies outside the program, null for all others: see scene_content_id().
   std::string (*content_id)(const SceneSettings&) = nullptr;
 };
 
@@ -86,7 +83,9 @@ std::span<const SceneEntry> scenes();
 // those it has.
 SceneSettings make_scene_settings(const SceneEntry& scene, const std::map<std::string, std::string>& given);
 
-// What the identity of a run needs besides the settings: "" for a scene that is all in the program.
+// A fingerprint of what lies outside the program, wherever it lies: 16 hexadecimal digits of the bytes of the
+// file that the settings name, "" for a scene without a file. Reads and checks all of it; throws
+// std::invalid_argument with one line.
 std::string scene_content_id(const SceneEntry& scene, const SceneSettings& settings);
 
 }  // namespace cleave
