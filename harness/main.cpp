@@ -8,9 +8,9 @@
 #include <map>
 #include <stdexcept>
 
-#include "harness/build_info.h"
+#include "harness/base/names.h"
 #include "harness/commands/command.h"
-#include "harness/nearest_name.h"
+#include "harness/files/build_info.h"
 
 namespace {
 

@@ -3,6 +3,7 @@
 // the queue joins next. A part that is closed drops its queue.
 #include <memory>
 
+#include "harness/base/parameter.h"
 #include "partition/grow.h"
 #include "partition/partitioner.h"
 
@@ -38,14 +39,22 @@ class QueueChooser final : public Chooser {
 };
 
 class BreadthFirst final : public Partitioner {
-  Partition do_run(const BodyGraph& graph, const PartitionOptions& options) const override {
+ public:
+  explicit BreadthFirst(int max_bodies) : max_bodies_(max_bodies) {}
+
+ private:
+  Partition do_run(const BodyGraph& graph) const override {
     QueueChooser chooser(graph.body_count());
-    return grow(graph, options.max_bodies, chooser);
+    return grow(graph, max_bodies_, chooser);
   }
+
+  int max_bodies_;
 };
 
 }  // namespace
 
-std::unique_ptr<Partitioner> make_bfs() { return std::make_unique<BreadthFirst>(); }
+std::unique_ptr<Partitioner> make_bfs(const Settings& settings) {
+  return std::make_unique<BreadthFirst>(settings.integer("max-bodies"));
+}
 
 }  // namespace cleave

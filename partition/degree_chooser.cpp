@@ -2,10 +2,15 @@
 
 namespace cleave {
 
-DegreeChooser::DegreeChooser(const BodyGraph& graph, Order order, DegreeUnit unit, DegreeScope scope)
+Degree read_degree(const Settings& settings) {
+  return {settings.word<DegreeUnit>(parameters::degree()),
+          settings.word<DegreeScope>(parameters::degree_scope())};
+}
+
+DegreeChooser::DegreeChooser(const BodyGraph& graph, Order order, Degree degree)
     : sign_(order == Order::least ? 1 : -1),
-      unit_(unit == DegreeUnit::bodies ? EdgeWeight::pairs : EdgeWeight::constraints),
-      scope_(scope),
+      unit_(degree.unit == DegreeUnit::bodies ? EdgeWeight::pairs : EdgeWeight::constraints),
+      scope_(degree.scope),
       key_(graph.body_count()),
       adjacent_to_(graph.body_count(), -1) {
   left_.reserve(graph.body_count());

@@ -9,15 +9,23 @@
 #include <vector>
 
 #include "partition/grow.h"
-#include "partition/partitioner.h"
+#include "partition/parameters.h"
 
 namespace cleave {
+
+struct Degree {
+  DegreeUnit unit;
+  DegreeScope scope;
+};
+
+// The parameters degree and degree-scope.
+Degree read_degree(const Settings& settings);
 
 class DegreeChooser : public Chooser {
  public:
   enum class Order { least, greatest };
 
-  DegreeChooser(const BodyGraph& graph, Order order, DegreeUnit unit, DegreeScope scope);
+  DegreeChooser(const BodyGraph& graph, Order order, Degree degree);
 
   int seed(const Growth& growth) override;
   int next(const Growth& growth) override;

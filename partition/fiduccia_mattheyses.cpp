@@ -3,7 +3,7 @@
 // A move takes body i of part A into a part B adjacent to i; its gain is E_i - I_i. It is allowed when A
 // keeps at least one body and B stays at or below
 //
-//     floor((1 + max_growth) max_bodies + 1e-9)      (as_printed: no bound).
+//     floor((1 + max-growth) max_bodies + 1e-9)      (as-printed: no bound).
 //
 // The allowed move of greatest gain is made, ties to the lowest body, then to the lowest B, until none has a
 // positive gain. Every move lowers the cut, so this ends. A part above the bound to begin with may shrink but
@@ -18,20 +18,14 @@
 namespace cleave {
 namespace {
 
-int most_bodies(const BodyGraph& graph, const RefineOptions& options) {
-  const double all = graph.body_count();
-  if (options.as_printed) return graph.body_count();
-  return static_cast<int>(std::min(all, std::floor((1 + options.max_growth) * options.max_bodies + 1e-9)));
-}
-
 // The heap holds every move of positive gain, except those parked because a part is full or would be emptied.
 class MoveSearch {
  public:
-  MoveSearch(const BodyGraph& graph, const RefineOptions& options, Partition& partition)
+  MoveSearch(const BodyGraph& graph, EdgeWeight unit, int most_bodies, Partition& partition)
       : graph_(graph),
         part_of_body_(partition.part_of_body),
-        most_bodies_(most_bodies(graph, options)),
-        gains_(graph, options.edge_weight, partition.part_count),
+        most_bodies_(most_bodies),
+        gains_(graph, unit, partition.part_count),
         bodies_(part_sizes(partition)),
         version_(graph.body_count(), 0),
         parked_(partition.part_count) {
@@ -105,15 +99,32 @@ class MoveSearch {
 };
 
 class FiducciaMattheyses final : public Refiner {
-  RefineSummary do_run(const BodyGraph& graph, const RefineOptions& options,
-                       Partition& partition) const override {
-    const long cut_before = cut_weight(graph, partition.part_of_body, options.edge_weight);
-    return MoveSearch(graph, options, partition).run(cut_before);
+ public:
+  explicit FiducciaMattheyses(const Settings& settings)
+      : Refiner(refining_unit(settings)),
+        max_growth_(settings.number("max-growth")),
+        bounded_(!settings.flag("as-printed")) {}
+
+ private:
+  RefineSummary do_run(const BodyGraph& graph, int max_bodies, Partition& partition) const override {
+    const long cut_before = cut_weight(graph, partition.part_of_body, unit());
+    return MoveSearch(graph, unit(), most_bodies(graph, max_bodies), partition).run(cut_before);
   }
+
+  int most_bodies(const BodyGraph& graph, int max_bodies) const {
+    const double all = graph.body_count();
+    if (!bounded_) return graph.body_count();
+    return static_cast<int>(std::min(all, std::floor((1 + max_growth_) * max_bodies + 1e-9)));
+  }
+
+  double max_growth_;
+  bool bounded_;
 };
 
 }  // namespace
 
-std::unique_ptr<Refiner> make_fiduccia_mattheyses() { return std::make_unique<FiducciaMattheyses>(); }
+std::unique_ptr<Refiner> make_fiduccia_mattheyses(const Settings& settings) {
+  return std::make_unique<FiducciaMattheyses>(settings);
+}
 
 }  // namespace cleave

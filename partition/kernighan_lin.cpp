@@ -185,15 +185,20 @@ class SwapSearch {
 };
 
 class KernighanLin final : public Refiner {
-  RefineSummary do_run(const BodyGraph& graph, const RefineOptions& options,
-                       Partition& partition) const override {
-    const long cut_before = cut_weight(graph, partition.part_of_body, options.edge_weight);
-    return SwapSearch(graph, options.edge_weight, partition).run(cut_before);
+ public:
+  explicit KernighanLin(const Settings& settings) : Refiner(refining_unit(settings)) {}
+
+ private:
+  RefineSummary do_run(const BodyGraph& graph, int, Partition& partition) const override {
+    const long cut_before = cut_weight(graph, partition.part_of_body, unit());
+    return SwapSearch(graph, unit(), partition).run(cut_before);
   }
 };
 
 }  // namespace
 
-std::unique_ptr<Refiner> make_kernighan_lin() { return std::make_unique<KernighanLin>(); }
+std::unique_ptr<Refiner> make_kernighan_lin(const Settings& settings) {
+  return std::make_unique<KernighanLin>(settings);
+}
 
 }  // namespace cleave

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "harness/base/parameter.h"
 #include "partition/grow.h"
 #include "partition/partitioner.h"
 
@@ -75,14 +76,24 @@ class MassRatioChooser final : public Chooser {
 };
 
 class MassRatio final : public Partitioner {
-  Partition do_run(const BodyGraph& graph, const PartitionOptions& options) const override {
-    MassRatioChooser chooser(graph.body_count(), options.tau_mr);
-    return grow(graph, options.max_bodies, chooser);
+ public:
+  explicit MassRatio(const Settings& settings)
+      : max_bodies_(settings.integer("max-bodies")), tau_mr_(settings.number("tau-mr")) {}
+
+ private:
+  Partition do_run(const BodyGraph& graph) const override {
+    MassRatioChooser chooser(graph.body_count(), tau_mr_);
+    return grow(graph, max_bodies_, chooser);
   }
+
+  int max_bodies_;
+  double tau_mr_;
 };
 
 }  // namespace
 
-std::unique_ptr<Partitioner> make_mass_ratio() { return std::make_unique<MassRatio>(); }
+std::unique_ptr<Partitioner> make_mass_ratio(const Settings& settings) {
+  return std::make_unique<MassRatio>(settings);
+}
 
 }  // namespace cleave

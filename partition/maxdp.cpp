@@ -4,20 +4,32 @@
 #include <memory>
 
 #include "partition/degree_chooser.h"
+#include "partition/partitioner.h"
 
 namespace cleave {
 namespace {
 
 class MaxDegree final : public Partitioner {
-  Partition do_run(const BodyGraph& graph, const PartitionOptions& options) const override {
-    const DegreeUnit unit = options.as_printed ? DegreeUnit::constraints : options.degree;
-    DegreeChooser chooser(graph, DegreeChooser::Order::greatest, unit, options.degree_scope);
-    return grow(graph, options.max_bodies, chooser);
+ public:
+  explicit MaxDegree(const Settings& settings)
+      : max_bodies_(settings.integer("max-bodies")), degree_(read_degree(settings)) {
+    if (settings.flag("as-printed")) degree_.unit = DegreeUnit::constraints;
   }
+
+ private:
+  Partition do_run(const BodyGraph& graph) const override {
+    DegreeChooser chooser(graph, DegreeChooser::Order::greatest, degree_);
+    return grow(graph, max_bodies_, chooser);
+  }
+
+  int max_bodies_;
+  Degree degree_;
 };
 
 }  // namespace
 
-std::unique_ptr<Partitioner> make_maxdp() { return std::make_unique<MaxDegree>(); }
+std::unique_ptr<Partitioner> make_maxdp(const Settings& settings) {
+  return std::make_unique<MaxDegree>(settings);
+}
 
 }  // namespace cleave

@@ -3,19 +3,30 @@
 #include <memory>
 
 #include "partition/degree_chooser.h"
+#include "partition/partitioner.h"
 
 namespace cleave {
 namespace {
 
 class MinDegree final : public Partitioner {
-  Partition do_run(const BodyGraph& graph, const PartitionOptions& options) const override {
-    DegreeChooser chooser(graph, DegreeChooser::Order::least, options.degree, options.degree_scope);
-    return grow(graph, options.max_bodies, chooser);
+ public:
+  explicit MinDegree(const Settings& settings)
+      : max_bodies_(settings.integer("max-bodies")), degree_(read_degree(settings)) {}
+
+ private:
+  Partition do_run(const BodyGraph& graph) const override {
+    DegreeChooser chooser(graph, DegreeChooser::Order::least, degree_);
+    return grow(graph, max_bodies_, chooser);
   }
+
+  int max_bodies_;
+  Degree degree_;
 };
 
 }  // namespace
 
-std::unique_ptr<Partitioner> make_mindp() { return std::make_unique<MinDegree>(); }
+std::unique_ptr<Partitioner> make_mindp(const Settings& settings) {
+  return std::make_unique<MinDegree>(settings);
+}
 
 }  // namespace cleave

@@ -4,21 +4,35 @@
 //
 //     W_i = sum over j in the part of w_ij,
 //
-// in the unit of options.edge_weight (as_printed: constraints). Ties go to the lowest body index, so that
+// in the unit edge-weight (as-printed: constraints). Ties go to the lowest body index, so that
 // with tau_mix = 0 it is also the seed.
 #include <memory>
 
 #include "partition/degree_chooser.h"
+#include "partition/partitioner.h"
 
 namespace cleave {
 namespace {
 
+struct MixOptions {
+  int max_bodies;
+  double tau_mix;
+  Degree degree;
+  EdgeWeight unit;  // of the weight into the part
+};
+
+MixOptions read_options(const Settings& settings) {
+  const EdgeWeight asked = settings.word<EdgeWeight>(parameters::edge_weight());
+  return {settings.integer("max-bodies"), settings.number("tau-mix"), read_degree(settings),
+          settings.flag("as-printed") ? EdgeWeight::constraints : asked};
+}
+
 class MixChooser final : public DegreeChooser {
  public:
-  MixChooser(const BodyGraph& graph, const PartitionOptions& options)
-      : DegreeChooser(graph, Order::least, options.degree, options.degree_scope),
+  MixChooser(const BodyGraph& graph, const MixOptions& options)
+      : DegreeChooser(graph, Order::least, options.degree),
         by_degree_(options.tau_mix * options.max_bodies),
-        unit_(options.as_printed ? EdgeWeight::constraints : options.edge_weight),
+        unit_(options.unit),
         weight_(graph.body_count(), 0),
         weight_of_(graph.body_count(), -1) {
     reached_.reserve(graph.body_count());
@@ -78,14 +92,20 @@ class MixChooser final : public DegreeChooser {
 };
 
 class Mix final : public Partitioner {
-  Partition do_run(const BodyGraph& graph, const PartitionOptions& options) const override {
-    MixChooser chooser(graph, options);
-    return grow(graph, options.max_bodies, chooser);
+ public:
+  explicit Mix(const Settings& settings) : options_(read_options(settings)) {}
+
+ private:
+  Partition do_run(const BodyGraph& graph) const override {
+    MixChooser chooser(graph, options_);
+    return grow(graph, options_.max_bodies, chooser);
   }
+
+  MixOptions options_;
 };
 
 }  // namespace
 
-std::unique_ptr<Partitioner> make_mix() { return std::make_unique<Mix>(); }
+std::unique_ptr<Partitioner> make_mix(const Settings& settings) { return std::make_unique<Mix>(settings); }
 
 }  // namespace cleave

@@ -7,15 +7,18 @@ namespace cleave {
 namespace {
 
 class None final : public Refiner {
-  RefineSummary do_run(const BodyGraph& graph, const RefineOptions& options,
-                       Partition& partition) const override {
-    const long cut = cut_weight(graph, partition.part_of_body, options.edge_weight);
+ public:
+  None() : Refiner(EdgeWeight::rows) {}
+
+ private:
+  RefineSummary do_run(const BodyGraph& graph, int, Partition& partition) const override {
+    const long cut = cut_weight(graph, partition.part_of_body, unit());
     return {0, cut, cut};
   }
 };
 
 }  // namespace
 
-std::unique_ptr<Refiner> make_none() { return std::make_unique<None>(); }
+std::unique_ptr<Refiner> make_none(const Settings&) { return std::make_unique<None>(); }
 
 }  // namespace cleave

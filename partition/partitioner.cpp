@@ -1,37 +1,66 @@
 #include "partition/partitioner.h"
 
-#include <algorithm>
 #include <cassert>
-
-#include "partition/refuse.h"
+#include <string>
+#include <vector>
 
 namespace cleave {
 namespace {
 
-// Written so that NaN is refused as well.
-void check(const PartitionOptions& options) {
-  if (options.max_bodies < 1) refuse("max_bodies", options.max_bodies, ">= 1");
-  if (!(options.tau_mr > 1)) refuse("tau_mr", options.tau_mr, "> 1");
-  if (!(options.tau_mix >= 0 && options.tau_mix <= 1)) refuse("tau_mix", options.tau_mix, "0 to 1");
+std::string at_body(int body, const Partition& partition) {
+  return "body " + std::to_string(body) + " is in part " + std::to_string(partition.part_of_body[body]);
 }
 
-[[maybe_unused]] bool is_valid(const BodyGraph& graph, const Partition& partition, int max_bodies) {
-  const std::vector<int>& part_of_body = partition.part_of_body;
-  const auto in_range = [&](int part) { return part >= 0 && part < partition.part_count; };
-  if (static_cast<int>(part_of_body.size()) != graph.body_count()) return false;
-  if (!std::all_of(part_of_body.begin(), part_of_body.end(), in_range)) return false;
-  for (int bodies : part_sizes(partition)) {
-    if (bodies < 1 || bodies > max_bodies) return false;
+// What holds for every partitioner.
+std::string find_fault(const BodyGraph& graph, const Partition& partition) {
+  const int bodies = static_cast<int>(partition.part_of_body.size());
+  if (bodies != graph.body_count())
+    return std::to_string(bodies) + " part ids for " + std::to_string(graph.body_count()) + " bodies";
+  for (int body = 0; body < bodies; ++body) {
+    const int part = partition.part_of_body[body];
+    if (part < 0 || part >= partition.part_count)
+      return at_body(body, partition) + " of " + std::to_string(partition.part_count);
   }
-  return count_pieces(graph, part_of_body) == partition.part_count;
+  const std::vector<int> sizes = part_sizes(partition);
+  for (int part = 0; part < partition.part_count; ++part)
+    if (sizes[part] == 0) return "part " + std::to_string(part) + " is empty";
+  return "";
+}
+
+// A growing part takes what it touches until it is full.
+std::string find_early_end(const BodyGraph& graph, const Partition& partition, int max_bodies) {
+  const std::vector<int> sizes = part_sizes(partition);
+  for (int body = 0; body < graph.body_count(); ++body) {
+    const int part = partition.part_of_body[body];
+    if (sizes[part] >= max_bodies) continue;
+    for (const int other : graph.neighbours(body))
+      if (partition.part_of_body[other] > part)
+        return at_body(body, partition) + ", which has room, and touches " + at_body(other, partition);
+  }
+  return "";
 }
 
 }  // namespace
 
-Partition Partitioner::run(const BodyGraph& graph, const PartitionOptions& options) const {
-  check(options);
-  Partition partition = do_run(graph, options);
-  assert(is_valid(graph, partition, options.max_bodies));
+std::string find_broken_promise(const BodyGraph& graph, const Partition& partition,
+                                const PartsPromise& promise, std::optional<int> max_bodies) {
+  const std::string fault = find_fault(graph, partition);
+  if (!fault.empty()) return fault;
+  if (promise.at_most_max_bodies) {
+    const std::vector<int> sizes = part_sizes(partition);
+    for (int part = 0; part < partition.part_count; ++part)
+      if (sizes[part] > max_bodies.value())
+        return "part " + std::to_string(part) + " has " + std::to_string(sizes[part]) +
+               " bodies, promised were at most " + std::to_string(*max_bodies);
+  }
+  if (promise.contiguous && count_pieces(graph, partition.part_of_body) != partition.part_count)
+    return "a part is not connected within itself";
+  return promise.grown_in_order ? find_early_end(graph, partition, max_bodies.value()) : "";
+}
+
+Partition Partitioner::run(const BodyGraph& graph) const {
+  Partition partition = do_run(graph);
+  assert(find_broken_promise(graph, partition, promise_, max_bodies_).empty());
   return partition;
 }
 

@@ -1,41 +1,50 @@
-// A partitioner splits the bodies of a step into parts of at most max_bodies.
+// A partitioner splits the bodies of a step into parts.
 //
 // All five of the paper (Liu & Andrews 2022, section 3.1) grow parts with one loop (grow.h) and differ in the
-// body they choose next. Ties: lowest body index. To add one: a new file and a row in registry.cpp.
+// body they choose next. Ties: lowest body index. To add one: a new file and a row in registry.cpp; the row
+// declares its parameters and promises what its parts are.
 #pragma once
+
+#include <optional>
+#include <string>
 
 #include "partition/body_graph.h"
 #include "partition/partition.h"
 
 namespace cleave {
 
-// What a body's degree counts (--degree): distinct adjacent bodies, or joints + contact points.
-enum class DegreeUnit { bodies, constraints };
-// Where it is counted: in the whole graph, or among the bodies that are not yet in a part (the part being
-// grown is one).
-enum class DegreeScope { whole, left };
-
-struct PartitionOptions {
-  int max_bodies = 25;   // n_max: most bodies of a part while growing, >= 1
-  double tau_mr = 10.0;  // mr: joins bodies with mass ratio strictly below this, > 1
-  double tau_mix = 0.5;  // mix: least degree decides while size < tau_mix * max_bodies, in [0, 1]
-  EdgeWeight edge_weight = EdgeWeight::rows;  // mix: weight of an edge into the part
-  DegreeUnit degree = DegreeUnit::bodies;     // mindp, maxdp, mix
-  DegreeScope degree_scope = DegreeScope::left;  // measured to cut fewer rows with mindp and mix, see README
-  bool as_printed = false;  // the paper to the letter: constraints as maxdp's degree and mix's edge weight
+// What the parts of an algorithm always are. Whatever it promises, every body has one part and no part is
+// empty.
+struct PartsPromise {
+  bool contiguous = false;          // every part is connected within itself
+  bool at_most_max_bodies = false;  // no part has more bodies than its parameter max-bodies says
+  bool grown_in_order = false;      // ids in order of growth, each part as far as it goes: one of fewer than
+                                    // max-bodies bodies touches no later one
 };
 
 class Partitioner {
  public:
   virtual ~Partitioner() = default;
 
-  // Checks the options (std::invalid_argument naming the field, its value and the allowed range), runs, and
-  // asserts that every body is in exactly one part, parts are contiguous, none is empty and none exceeds
-  // max_bodies.
-  Partition run(const BodyGraph& graph, const PartitionOptions& options) const;
+  // Runs, and asserts that every body is in exactly one part, that none is empty, and what was promised.
+  Partition run(const BodyGraph& graph) const;
+
+  // From its row, by make_partitioner (registry.h). max_bodies: its parameter of this name, if it has one.
+  void promise(const PartsPromise& promise, std::optional<int> max_bodies) {
+    promise_ = promise;
+    max_bodies_ = max_bodies;
+  }
+  std::optional<int> max_bodies() const { return max_bodies_; }
 
  private:
-  virtual Partition do_run(const BodyGraph& graph, const PartitionOptions& options) const = 0;
+  virtual Partition do_run(const BodyGraph& graph) const = 0;
+
+  PartsPromise promise_;
+  std::optional<int> max_bodies_;
 };
+
+// Empty, or the one thing that is wrong, in words: "part 3 has 30 bodies, promised were at most 25".
+std::string find_broken_promise(const BodyGraph& graph, const Partition& partition,
+                                const PartsPromise& promise, std::optional<int> max_bodies);
 
 }  // namespace cleave

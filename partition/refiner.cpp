@@ -4,16 +4,11 @@
 #include <cassert>
 #include <string>
 
+#include "partition/parameters.h"
 #include "partition/refuse.h"
 
 namespace cleave {
 namespace {
-
-// Written so that NaN is refused as well.
-void check(const RefineOptions& options) {
-  if (options.max_bodies < 1) refuse("max_bodies", options.max_bodies, ">= 1");
-  if (!(options.max_growth >= 0)) refuse("max_growth", options.max_growth, ">= 0");
-}
 
 void check(const BodyGraph& graph, const Partition& partition) {
   const int n = graph.body_count();
@@ -42,14 +37,17 @@ void check(const BodyGraph& graph, const Partition& partition) {
 
 }  // namespace
 
-RefineSummary Refiner::run(const BodyGraph& graph, const RefineOptions& options, Partition& partition) const {
-  check(options);
+RefineSummary Refiner::run(const BodyGraph& graph, int max_bodies, Partition& partition) const {
+  if (max_bodies < 1) refuse("max_bodies", max_bodies, ">= 1");
   check(graph, partition);
-  RefineOptions used = options;
-  if (options.as_printed) used.edge_weight = EdgeWeight::pairs;
-  RefineSummary summary = do_run(graph, used, partition);
-  assert(is_valid(graph, partition, used.edge_weight, summary));
+  RefineSummary summary = do_run(graph, max_bodies, partition);
+  assert(is_valid(graph, partition, unit_, summary));
   return summary;
+}
+
+EdgeWeight refining_unit(const Settings& settings) {
+  if (settings.flag("as-printed")) return EdgeWeight::pairs;
+  return settings.word<EdgeWeight>(parameters::edge_weight());
 }
 
 }  // namespace cleave

@@ -6,17 +6,11 @@
 // part id. "none" is an ordinary refiner. To add one: a new file and a row in registry.cpp.
 #pragma once
 
+#include "harness/base/parameter.h"
 #include "partition/body_graph.h"
 #include "partition/partition.h"
 
 namespace cleave {
-
-struct RefineOptions {
-  int max_bodies = 25;      // n_max of the growing stage, >= 1
-  double max_growth = 0.2;  // g: fm lets a part grow to floor((1 + g) max_bodies + 1e-9), g >= 0
-  EdgeWeight edge_weight = EdgeWeight::rows;
-  bool as_printed = false;  // the paper to the letter: pairs as edge weight, no bound on a part
-};
 
 struct RefineSummary {
   int exchanges = 0;    // swaps (kl) or moves (fm) made
@@ -28,14 +22,23 @@ class Refiner {
  public:
   virtual ~Refiner() = default;
 
-  // Throws std::invalid_argument when an option is out of range, or when the partition has not one id in
-  // [0, part_count) per body or an empty part. Runs on the partition in place; asserts that no part became
-  // empty and that cut_after is true.
-  RefineSummary run(const BodyGraph& graph, const RefineOptions& options, Partition& partition) const;
+  // max_bodies: n_max of the growing stage, >= 1. Throws std::invalid_argument when it is not, or when the
+  // partition has not one id in [0, part_count) per body or an empty part. Runs on the partition in place;
+  // asserts that no part became empty and that cut_after is true.
+  RefineSummary run(const BodyGraph& graph, int max_bodies, Partition& partition) const;
+
+ protected:
+  // unit: the weight in which cuts and gains are counted.
+  explicit Refiner(EdgeWeight unit) : unit_(unit) {}
+  EdgeWeight unit() const { return unit_; }
 
  private:
-  virtual RefineSummary do_run(const BodyGraph& graph, const RefineOptions& options,
-                               Partition& partition) const = 0;
+  virtual RefineSummary do_run(const BodyGraph& graph, int max_bodies, Partition& partition) const = 0;
+
+  EdgeWeight unit_;
 };
+
+// edge-weight, or pairs with as-printed: the paper's refiners to the letter.
+EdgeWeight refining_unit(const Settings& settings);
 
 }  // namespace cleave

@@ -4,27 +4,35 @@
 
 #include <memory>
 #include <span>
+#include <string>
 
+#include "harness/base/algorithm.h"
 #include "partition/partitioner.h"
 #include "partition/refiner.h"
 
 namespace cleave {
 
-struct PartitionerEntry {
-  const char* name;
-  const char* help;       // one line
-  const char* reference;  // where it is described
-  std::unique_ptr<Partitioner> (*make)();
+struct PartitionerEntry : AlgorithmEntry {
+  PartsPromise promise;
+  bool of_paper;  // one of Liu & Andrews 2022: what --partitioner paper names
+  std::unique_ptr<Partitioner> (*make)(const Settings& settings);
 };
 
-struct RefinerEntry {
-  const char* name;
-  const char* help;
-  const char* reference;
-  std::unique_ptr<Refiner> (*make)();
+struct RefinerEntry : AlgorithmEntry {
+  bool of_paper;
+  std::unique_ptr<Refiner> (*make)(const Settings& settings);
 };
 
 std::span<const PartitionerEntry> partitioners();
 std::span<const RefinerEntry> refiners();
+
+// "mix@tau-mix=0.3": makes the algorithm with these parameters and the defaults of all others. Throw
+// std::invalid_argument with one line that names the text and what is allowed.
+std::unique_ptr<Partitioner> make_partitioner(const std::string& text);
+std::unique_ptr<Refiner> make_refiner(const std::string& text);
+
+// The same from complete settings; the name must be in the table.
+std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm);
+std::unique_ptr<Refiner> make_refiner(const Algorithm& algorithm);
 
 }  // namespace cleave

@@ -53,8 +53,7 @@ double centre(std::vector<Vector>& joints) {
 
 class ChainDrop : public Scene {
  public:
-  SceneContent build(dWorldID world, dSpaceID space, const SceneSettings& settings,
-                     std::uint64_t seed) override {
+  SceneContent build(dWorldID world, dSpaceID space, const Settings& settings, std::uint64_t seed) override {
     SceneBuilder builder(world, space);
     SceneRandom random(seed);
     const int links = settings.integer("links");
@@ -82,10 +81,10 @@ class ChainDrop : public Scene {
 
 }  // namespace
 
-std::vector<SceneParameter> chain_drop_parameters() {
-  using Type = SceneParameter::Type;
-  return {{"links", Type::integer, "100", 1, 20000, {}, "number of links"},
-          {"bob-mass", Type::number, "1", 1e-6, 1e9, {}, "kg of the last link; the others have 1 kg"}};
+std::vector<Parameter> chain_drop_parameters() {
+  using Kind = Parameter::Kind;
+  return {{"links", Kind::integer, "100", {1, 20000}, {}, "", "number of links"},
+          {"bob-mass", Kind::number, "1", {1e-6, 1e9}, {}, "", "kg of the last link; the others have 1 kg"}};
 }
 
 std::unique_ptr<Scene> make_chain_drop() { return std::make_unique<ChainDrop>(); }

@@ -8,7 +8,7 @@
 
 namespace cleave {
 
-std::vector<SceneParameter> chain_drop_parameters();  // --links, --bob-mass
+std::vector<Parameter> chain_drop_parameters();  // --links, --bob-mass
 
 std::unique_ptr<Scene> make_chain_drop();
 

@@ -72,7 +72,7 @@ std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   if (!file || std::filesystem::is_directory(path) || !(text << file.rdbuf()))
-    throw std::invalid_argument("--path: '" + path + "' cannot be read, or is empty; allowed: a scene file");
+    throw std::invalid_argument("--scene file@path: '" + path + "' cannot be read, or is empty; allowed: a scene file");
   return std::move(text).str();
 }
 

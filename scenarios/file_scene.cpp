@@ -12,7 +12,7 @@ using scene_file::Description;
 using scene_file::Event;
 using scene_file::Vector;
 
-const Description& description(const SceneSettings& settings) {
+const Description& description(const Settings& settings) {
   return scene_file::description_of(settings.text("path"));
 }
 
@@ -51,7 +51,7 @@ void apply(const Change& change, dBodyID body) {
 
 class FileScene : public Scene {
  public:
-  SceneContent build(dWorldID world, dSpaceID space, const SceneSettings& settings,
+  SceneContent build(dWorldID world, dSpaceID space, const Settings& settings,
                      std::uint64_t seed) override {
     const Description& scene = description(settings);
     SceneRandom random(seed);
@@ -72,13 +72,12 @@ class FileScene : public Scene {
 
 }  // namespace
 
-std::vector<SceneParameter> file_scene_parameters() {
-  return {
-      {"path", SceneParameter::Type::text, nullptr, 0, 0, {}, "scene file; see scenarios/FILE_SCENES.md"}};
+std::vector<Parameter> file_scene_parameters() {
+  return {{.name = "path", .kind = Parameter::Kind::path, .help = "scene file; see scenarios/FILE_SCENES.md"}};
 }
 
 std::unique_ptr<Scene> make_file_scene() { return std::make_unique<FileScene>(); }
 
-std::string file_scene_content_id(const SceneSettings& settings) { return description(settings).content_id; }
+std::string file_scene_content_id(const Settings& settings) { return description(settings).content_id; }
 
 }  // namespace cleave

@@ -9,12 +9,12 @@
 
 namespace cleave {
 
-std::vector<SceneParameter> file_scene_parameters();  // --path
+std::vector<Parameter> file_scene_parameters();  // path
 
 std::unique_ptr<Scene> make_file_scene();
 
 // FNV-1a-64 of the file's bytes, 16 hexadecimal digits. Reads and checks the file: throws
 // std::invalid_argument with one line that names file, line and key.
-std::string file_scene_content_id(const SceneSettings& settings);
+std::string file_scene_content_id(const Settings& settings);
 
 }  // namespace cleave

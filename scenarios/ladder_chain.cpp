@@ -15,7 +15,7 @@ constexpr double kGround_m = 1;    // of the bob's lower end above z = 0 when th
 
 class LadderChain : public Scene {
  public:
-  SceneContent build(dWorldID world, dSpaceID space, const SceneSettings& settings, std::uint64_t) override {
+  SceneContent build(dWorldID world, dSpaceID space, const Settings& settings, std::uint64_t) override {
     SceneBuilder builder(world, space);
     const int links = settings.integer("links");
     const double angle_rad = settings.number("angle") * std::numbers::pi / 180;
@@ -39,12 +39,18 @@ class LadderChain : public Scene {
 
 }  // namespace
 
-std::vector<SceneParameter> ladder_chain_parameters() {
-  using Type = SceneParameter::Type;
+std::vector<Parameter> ladder_chain_parameters() {
+  using Kind = Parameter::Kind;
   return {
-      {"links", Type::integer, "10", 1, 20000, {}, "number of links, the bob among them"},
-      {"mass-ratio", Type::number, "1000", 1, 1e9, {}, "kg of a heavy body; the light ones have 1 kg"},
-      {"angle", Type::number, "0", 0, 80, {}, "degrees from the level (a plane) or from hanging (a chain)"}};
+      {"links", Kind::integer, "10", {1, 20000}, {}, "", "number of links, the bob among them"},
+      {"mass-ratio", Kind::number, "1000", {1, 1e9}, {}, "", "kg of a heavy body; the light ones have 1 kg"},
+      {"angle",
+       Kind::number,
+       "0",
+       {0, 80},
+       {},
+       "",
+       "degrees from the level (a plane) or from hanging (a chain)"}};
 }
 
 std::unique_ptr<Scene> make_ladder_chain() { return std::make_unique<LadderChain>(); }

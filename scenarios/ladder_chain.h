@@ -8,7 +8,7 @@
 
 namespace cleave {
 
-std::vector<SceneParameter> ladder_chain_parameters();  // --links, --mass-ratio, --angle
+std::vector<Parameter> ladder_chain_parameters();  // --links, --mass-ratio, --angle
 
 std::unique_ptr<Scene> make_ladder_chain();
 

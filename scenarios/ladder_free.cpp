@@ -9,7 +9,7 @@ constexpr double kSpacing_m = 3;
 
 class LadderFree : public Scene {
  public:
-  SceneContent build(dWorldID world, dSpaceID space, const SceneSettings& settings, std::uint64_t) override {
+  SceneContent build(dWorldID world, dSpaceID space, const Settings& settings, std::uint64_t) override {
     SceneBuilder builder(world, space);
     const int boxes = settings.integer("boxes");
     for (int i = 0; i < boxes; ++i)
@@ -20,8 +20,8 @@ class LadderFree : public Scene {
 
 }  // namespace
 
-std::vector<SceneParameter> ladder_free_parameters() {
-  return {{"boxes", SceneParameter::Type::integer, "1", 1, 1000, {}, "number of boxes"}};
+std::vector<Parameter> ladder_free_parameters() {
+  return {{"boxes", Parameter::Kind::integer, "1", {1, 1000}, {}, "", "number of boxes"}};
 }
 
 std::unique_ptr<Scene> make_ladder_free() { return std::make_unique<LadderFree>(); }

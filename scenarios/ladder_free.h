@@ -8,7 +8,7 @@
 
 namespace cleave {
 
-std::vector<SceneParameter> ladder_free_parameters();  // --boxes
+std::vector<Parameter> ladder_free_parameters();  // --boxes
 
 std::unique_ptr<Scene> make_ladder_free();
 

@@ -31,7 +31,7 @@ std::vector<Vector> corners(int links) {
 
 class LadderLoop : public Scene {
  public:
-  SceneContent build(dWorldID world, dSpaceID space, const SceneSettings& settings, std::uint64_t) override {
+  SceneContent build(dWorldID world, dSpaceID space, const Settings& settings, std::uint64_t) override {
     SceneBuilder builder(world, space);
     const std::vector<Vector> points = corners(settings.integer("links"));
     std::vector<dBodyID> links;
@@ -51,8 +51,8 @@ class LadderLoop : public Scene {
 
 }  // namespace
 
-std::vector<SceneParameter> ladder_loop_parameters() {
-  return {{"links", SceneParameter::Type::integer, "6", 3, 1000, {}, "number of links"}};
+std::vector<Parameter> ladder_loop_parameters() {
+  return {{"links", Parameter::Kind::integer, "6", {3, 1000}, {}, "", "number of links"}};
 }
 
 std::unique_ptr<Scene> make_ladder_loop() { return std::make_unique<LadderLoop>(); }

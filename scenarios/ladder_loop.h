@@ -9,7 +9,7 @@
 
 namespace cleave {
 
-std::vector<SceneParameter> ladder_loop_parameters();  // --links
+std::vector<Parameter> ladder_loop_parameters();  // --links
 
 std::unique_ptr<Scene> make_ladder_loop();
 

@@ -20,31 +20,31 @@ struct StackPlan {
   int copies = 1;        // how often every box carries its shape
 };
 
-using MakePlan = StackPlan (*)(const SceneSettings& settings);
+using MakePlan = StackPlan (*)(const Settings& settings);
 
-StackPlan equal_boxes(const SceneSettings& settings) {
+StackPlan equal_boxes(const Settings& settings) {
   return {std::vector<double>(settings.integer("boxes"), kMass_kg)};
 }
 
-StackPlan plain_plan(const SceneSettings& settings) {
+StackPlan plain_plan(const Settings& settings) {
   StackPlan plan = equal_boxes(settings);
   plan.copies = settings.integer("copies");
   return plan;
 }
 
-StackPlan heavy_top_plan(const SceneSettings& settings) {
+StackPlan heavy_top_plan(const Settings& settings) {
   StackPlan plan = equal_boxes(settings);
   plan.mass_kg.push_back(kMass_kg * settings.number("mass-ratio"));
   return plan;
 }
 
-StackPlan alternating_plan(const SceneSettings& settings) {
+StackPlan alternating_plan(const Settings& settings) {
   StackPlan plan = equal_boxes(settings);
   for (std::size_t i = 1; i < plan.mass_kg.size(); i += 2) plan.mass_kg[i] *= settings.number("mass-ratio");
   return plan;
 }
 
-StackPlan incline_plan(const SceneSettings& settings) {
+StackPlan incline_plan(const Settings& settings) {
   StackPlan plan = equal_boxes(settings);
   plan.angle_rad = settings.number("angle") * std::numbers::pi / 180;
   return plan;
@@ -54,7 +54,7 @@ class LadderStack : public Scene {
  public:
   explicit LadderStack(MakePlan make_plan) : make_plan_(make_plan) {}
 
-  SceneContent build(dWorldID world, dSpaceID space, const SceneSettings& settings, std::uint64_t) override {
+  SceneContent build(dWorldID world, dSpaceID space, const Settings& settings, std::uint64_t) override {
     const StackPlan plan = make_plan_(settings);
     // Overlap up to here is not pushed out. Without it a stiff stack would be pushed apart to the last digit,
     // lose contact and fall by g h^2.
@@ -80,48 +80,55 @@ class LadderStack : public Scene {
   MakePlan make_plan_;
 };
 
-using Type = SceneParameter::Type;
+using Kind = Parameter::Kind;
 
-SceneParameter boxes_parameter(const char* count) {
-  return {"boxes", Type::integer, count, 1, 1000, {}, "number of boxes of 1 kg with edges of 1 m"};
+Parameter boxes_parameter(const char* count) {
+  return {"boxes", Kind::integer, count, {1, 1000}, {}, "", "number of boxes of 1 kg with edges of 1 m"};
 }
 
-SceneParameter mass_ratio_parameter(const char* ratio) {
-  return {"mass-ratio", Type::number, ratio, 1, 1e9, {}, "kg of a heavy body; the light ones have 1 kg"};
+Parameter mass_ratio_parameter(const char* ratio) {
+  return {
+      "mass-ratio", Kind::number, ratio, {1, 1e9}, {}, "", "kg of a heavy body; the light ones have 1 kg"};
 }
 
 // What all of them have besides their own: how the boxes touch at the start.
-std::vector<SceneParameter> with_touch(std::vector<SceneParameter> own) {
-  own.push_back({"overlap-m", Type::number, "1e-7", 0, 1e-6, {}, "m by which faces overlap at the start"});
-  own.push_back({"layer-m", Type::number, "1e-6", 0, 1e-2, {}, "m of overlap that is not pushed out"});
-  own.push_back({"offset-m", Type::number, "0", 0, 0.1, {}, "m by which boxes stand off the axis"});
+std::vector<Parameter> with_touch(std::vector<Parameter> own) {
+  own.push_back(
+      {"overlap-m", Kind::number, "1e-7", {0, 1e-6}, {}, "", "m by which faces overlap at the start"});
+  own.push_back({"layer-m", Kind::number, "1e-6", {0, 1e-2}, {}, "", "m of overlap that is not pushed out"});
+  own.push_back({"offset-m", Kind::number, "0", {0, 0.1}, {}, "", "m by which boxes stand off the axis"});
   return own;
 }
 
 }  // namespace
 
-std::vector<SceneParameter> ladder_stack_parameters() {
-  return with_touch(
-      {boxes_parameter("10"),
-       {"copies", Type::integer, "1", 1, 4, {}, "coincident shapes of every box: contacts reported again"}});
+std::vector<Parameter> ladder_stack_parameters() {
+  return with_touch({boxes_parameter("10"),
+                     {"copies",
+                      Kind::integer,
+                      "1",
+                      {1, 4},
+                      {},
+                      "",
+                      "coincident shapes of every box: contacts reported again"}});
 }
 
-std::vector<SceneParameter> ladder_heavy_top_parameters() {
+std::vector<Parameter> ladder_heavy_top_parameters() {
   return with_touch({boxes_parameter("5"), mass_ratio_parameter("1e6")});
 }
 
-std::vector<SceneParameter> ladder_alternating_parameters() {
+std::vector<Parameter> ladder_alternating_parameters() {
   return with_touch({boxes_parameter("10"), mass_ratio_parameter("1000")});
 }
 
-std::vector<SceneParameter> ladder_incline_parameters() {
+std::vector<Parameter> ladder_incline_parameters() {
   return with_touch({boxes_parameter("1"),
                      {"angle",
-                      Type::number,
+                      Kind::number,
                       "15",
-                      0,
-                      80,
+                      {0, 80},
                       {},
+                      "",
                       "degrees from the level (a plane) or from hanging (a chain)"}});
 }
 

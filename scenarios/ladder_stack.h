@@ -9,16 +9,16 @@
 
 namespace cleave {
 
-std::vector<SceneParameter> ladder_stack_parameters();  // --boxes, --copies
+std::vector<Parameter> ladder_stack_parameters();  // --boxes, --copies
 std::unique_ptr<Scene> make_ladder_stack();
 
-std::vector<SceneParameter> ladder_heavy_top_parameters();  // --boxes, --mass-ratio
+std::vector<Parameter> ladder_heavy_top_parameters();  // --boxes, --mass-ratio
 std::unique_ptr<Scene> make_ladder_heavy_top();
 
-std::vector<SceneParameter> ladder_alternating_parameters();  // --boxes, --mass-ratio
+std::vector<Parameter> ladder_alternating_parameters();  // --boxes, --mass-ratio
 std::unique_ptr<Scene> make_ladder_alternating();
 
-std::vector<SceneParameter> ladder_incline_parameters();  // --boxes, --angle
+std::vector<Parameter> ladder_incline_parameters();  // --boxes, --angle
 std::unique_ptr<Scene> make_ladder_incline();
 
 }  // namespace cleave

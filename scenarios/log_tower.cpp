@@ -44,8 +44,7 @@ constexpr LogShape kLogShapes[] = {
 
 class LogTower : public Scene {
  public:
-  SceneContent build(dWorldID world, dSpaceID space, const SceneSettings& settings,
-                     std::uint64_t seed) override {
+  SceneContent build(dWorldID world, dSpaceID space, const Settings& settings, std::uint64_t seed) override {
     SceneBuilder builder(world, space);
     const int layers = settings.integer("layers");
     builder.add_plane({0, 0, 1}, 0);
@@ -94,13 +93,13 @@ class LogTower : public Scene {
 
 }  // namespace
 
-std::vector<SceneParameter> log_tower_parameters() {
-  using Type = SceneParameter::Type;
+std::vector<Parameter> log_tower_parameters() {
+  using Kind = Parameter::Kind;
   std::vector<std::string> shapes;
   for (const LogShape& shape : kLogShapes) shapes.push_back(shape.name);
-  return {{"layers", Type::integer, "40", 1, 1000, {}, "number of layers"},
-          {"logs", Type::integer, "5", 2, 10, {}, "logs a layer, 10 lie side by side"},
-          {"log-shape", Type::choice, "capsule", 0, 0, shapes, "shape of every log"}};
+  return {{"layers", Kind::integer, "40", {1, 1000}, {}, "", "number of layers"},
+          {"logs", Kind::integer, "5", {2, 10}, {}, "", "logs a layer, 10 lie side by side"},
+          {"log-shape", Kind::word, "capsule", {0, 0}, shapes, "", "shape of every log"}};
 }
 
 std::unique_ptr<Scene> make_log_tower() { return std::make_unique<LogTower>(); }

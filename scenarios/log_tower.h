@@ -8,7 +8,7 @@
 
 namespace cleave {
 
-std::vector<SceneParameter> log_tower_parameters();  // --layers, --logs, --log-shape
+std::vector<Parameter> log_tower_parameters();  // --layers, --logs, --log-shape
 
 std::unique_ptr<Scene> make_log_tower();
 

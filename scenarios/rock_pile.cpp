@@ -79,8 +79,7 @@ const RockShape& rock_shape(const std::string& name) {
 
 class RockPile : public Scene {
  public:
-  SceneContent build(dWorldID world, dSpaceID space, const SceneSettings& settings,
-                     std::uint64_t seed) override {
+  SceneContent build(dWorldID world, dSpaceID space, const Settings& settings, std::uint64_t seed) override {
     SceneBuilder builder(world, space);
     SceneRandom random(seed);
     const int bodies = settings.integer("bodies");
@@ -110,19 +109,24 @@ class RockPile : public Scene {
 
 }  // namespace
 
-std::vector<SceneParameter> rock_pile_parameters(const char* default_bodies, const char* default_mass_kg) {
-  using Type = SceneParameter::Type;
+std::vector<Parameter> rock_pile_parameters(const char* default_bodies, const char* default_mass_kg) {
+  using Kind = Parameter::Kind;
   std::vector<std::string> shapes;
   for (const RockShape& shape : kRockShapes) shapes.push_back(shape.name);
-  return {{"bodies", Type::integer, default_bodies, 1, 20000, {}, "number of rocks"},
-          {"rock-shape", Type::choice, "box", 0, 0, shapes,
+  return {{"bodies", Kind::integer, default_bodies, {1, 20000}, {}, "", "number of rocks"},
+          {"rock-shape",
+           Kind::word,
+           "box",
+           {0, 0},
+           shapes,
+           "",
            "shape of every rock; clump is four spheres on one body"},
           {"mass",
-           Type::number_list,
+           Kind::numbers,
            default_mass_kg,
-           1e-6,
-           1e9,
+           {1e-6, 1e9},
            {},
+           "",
            "kg; of several values each rock draws one"}};
 }
 

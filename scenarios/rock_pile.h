@@ -9,7 +9,7 @@
 namespace cleave {
 
 // --bodies, --rock-shape, --mass. Piles that differ only in defaults are rows of the registry.
-std::vector<SceneParameter> rock_pile_parameters(const char* default_bodies, const char* default_mass_kg);
+std::vector<Parameter> rock_pile_parameters(const char* default_bodies, const char* default_mass_kg);
 
 std::unique_ptr<Scene> make_rock_pile();
 

@@ -1,6 +1,6 @@
 // A scene fills an ODE world with bodies, geometry and joints, and may act on it between steps.
 //
-// scenarios/ knows ODE and nothing else. To add a scene: a new file and a row in registry.cpp; its parameters
+// scenarios/ knows ODE and harness/base. To add a scene: a new file and a row in registry.cpp; its parameters
 // appear on the command line, in `cleave list scenes`, in the manifest and in the tests by themselves.
 #pragma once
 
@@ -13,34 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "harness/base/algorithm.h"
+
 namespace cleave {
-
-// One parameter of a scene, e.g. --bodies 200. Numbers carry a range, choices a list, number lists
-// ("10,100,1000") the range of each number.
-struct SceneParameter {
-  enum class Type { integer, number, number_list, choice, text };
-  const char* name;  // option name without dashes: "bodies"
-  Type type;
-  const char* default_value;  // as text; null: must be given
-  double min;                 // allowed range of numbers, inclusive
-  double max;
-  std::vector<std::string> choices;  // of a choice
-  const char* help;                  // one line with the unit
-};
-
-// Validated values by parameter name; every parameter of the scene is present.
-class SceneSettings {
- public:
-  explicit SceneSettings(std::map<std::string, std::string> values) : values_(std::move(values)) {}
-  int integer(const std::string& name) const;
-  double number(const std::string& name) const;
-  std::vector<double> numbers(const std::string& name) const;
-  const std::string& text(const std::string& name) const { return values_.at(name); }
-  const std::map<std::string, std::string>& values() const { return values_; }
-
- private:
-  std::map<std::string, std::string> values_;
-};
 
 // What a scene put into the world, in creation order. Indices into these lists are the only identities used
 // outside (addresses never are).
@@ -60,32 +35,31 @@ class Scene {
   virtual ~Scene() = default;
   // Builds into an empty world. seed: every random choice comes from it. The caller owns world and space and
   // destroys them with everything in them.
-  virtual SceneContent build(dWorldID world, dSpaceID space, const SceneSettings& settings,
+  virtual SceneContent build(dWorldID world, dSpaceID space, const Settings& settings,
                              std::uint64_t seed) = 0;
   // Called before step number `step` (0, 1, ...) is collided: scripted events such as a ball that is let go.
   virtual void before_step(int /*step*/, const SceneContent& /*content*/) {}
 };
 
-struct SceneEntry {
-  const char* name;
-  const char* help;
-  const char* reference;
-  std::vector<SceneParameter> parameters;
+struct SceneEntry : AlgorithmEntry {
   std::unique_ptr<Scene> (*make)();
   // Of a scene whose content lies outside the program, null for all others: see scene_content_id().
-  std::string (*content_id)(const SceneSettings&) = nullptr;
+  std::string (*content_id)(const Settings&) = nullptr;
 };
 
 std::span<const SceneEntry> scenes();
 
+// Throws std::invalid_argument for an option that the scene does not have, naming those it has.
+void check_scene_options(const SceneEntry& scene, const std::map<std::string, std::string>& given);
+
 // Completes given values with the scene's defaults and checks them. Throws std::invalid_argument with one
 // line naming the option, the value and the allowed range or choices; an option the scene does not have names
 // those it has.
-SceneSettings make_scene_settings(const SceneEntry& scene, const std::map<std::string, std::string>& given);
+Settings make_scene_settings(const SceneEntry& scene, const std::map<std::string, std::string>& given);
 
 // A fingerprint of what lies outside the program, wherever it lies: 16 hexadecimal digits of the bytes of the
 // file that the settings name, "" for a scene without a file. Reads and checks all of it; throws
 // std::invalid_argument with one line.
-std::string scene_content_id(const SceneEntry& scene, const SceneSettings& settings);
+std::string scene_content_id(const SceneEntry& scene, const Settings& settings);
 
 }  // namespace cleave

@@ -57,15 +57,15 @@ struct Link {
 
 class DirectSolver : public StepSolver {
  public:
-  DirectSolver(std::string_view strategy, std::string_view kernel, bool splits, std::unique_ptr<Kernel> made,
-               const SolveOptions& options)
+  DirectSolver(std::string_view strategy, const KernelRow& kernel, const SolveOptions& options,
+               const Settings& settings)
       : strategy_(strategy),
-        kernel_name_(kernel),
-        splits_(splits),
-        options_(options),
+        kernel_name_(kernel.resolved),
+        splits_(kernel.splits),
+        settings_(settings),
         clock_(options.threads),
-        kernel_(std::move(made)),
-        state_(options, clock_) {}
+        kernel_(kernel.make(settings)),
+        state_(read_direct_options(options, settings), clock_) {}
 
   bool uses_partition() const override { return splits_; }
 
@@ -82,7 +82,7 @@ class DirectSolver : public StepSolver {
 
   std::string strategy_, kernel_name_;
   bool splits_;
-  SolveOptions options_;
+  Settings settings_;
   StageClock clock_;
   std::unique_ptr<Kernel> kernel_;
   PreparedStep step_;
@@ -99,8 +99,8 @@ Strategy& DirectSolver::strategy(std::string_view name) {
     if (link.name == name) return *link.strategy;
   }
   for (const StrategyRow& row : strategy_table()) {
-    if (row.entry.name == name && row.make != nullptr) {
-      links_.push_back({row.entry.name, row.make()});
+    if (row.name == name && row.make != nullptr) {
+      links_.push_back({row.name, row.make(settings_)});
       return *links_.back().strategy;
     }
   }
@@ -114,7 +114,7 @@ bool DirectSolver::reuse_analysis(const StepProblem& problem, std::span<const in
 }
 
 void DirectSolver::analyze(const StepProblem& problem, std::span<const int> part_of_body) {
-  const bool reused = options_.reuse_analysis && reuse_analysis(problem, part_of_body);
+  const bool reused = state_.options.reuse_analysis && reuse_analysis(problem, part_of_body);
   {
     StageTimer timer(clock_, Stage::analyze);
     analyzed_ = true;
@@ -236,15 +236,13 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const 
 }  // namespace
 
 std::unique_ptr<StepSolver> make_direct_solver(std::string_view strategy, std::string_view kernel,
-                                               const SolveOptions& options) {
-  const auto strategy_row = std::ranges::find(
-      strategy_table(), strategy, [](const auto& row) { return std::string_view(row.entry.name); });
-  const auto kernel_row = std::ranges::find(kernel_table(), kernel,
-                                            [](const auto& row) { return std::string_view(row.entry.name); });
+                                               const SolveOptions& options, const Settings& settings) {
+  const auto name_of = [](const AlgorithmEntry& row) { return std::string_view(row.name); };
+  const auto strategy_row = std::ranges::find(strategy_table(), strategy, name_of);
+  const auto kernel_row = std::ranges::find(kernel_table(), kernel, name_of);
   if (strategy_row == strategy_table().end() || kernel_row == kernel_table().end()) return nullptr;
   if (!runs_on(*strategy_row, *kernel_row)) return nullptr;
-  return std::make_unique<DirectSolver>(strategy, kernel_row->resolved, kernel_row->splits,
-                                        kernel_row->make(), options);
+  return std::make_unique<DirectSolver>(strategy, *kernel_row, options, settings);
 }
 
 }  // namespace cleave

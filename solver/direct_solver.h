@@ -4,12 +4,14 @@
 #include <memory>
 #include <string_view>
 
+#include "harness/base/parameter.h"
 #include "solver/step_solver.h"
 
 namespace cleave {
 
-// strategy and kernel are names of registry.h; nullptr when the pair does not exist.
+// strategy and kernel are names of registry.h; nullptr when the pair does not exist. settings: values of the
+// parameters that strategy and kernel declare.
 std::unique_ptr<StepSolver> make_direct_solver(std::string_view strategy, std::string_view kernel,
-                                               const SolveOptions& options);
+                                               const SolveOptions& options, const Settings& settings);
 
 }  // namespace cleave

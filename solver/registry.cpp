@@ -1,86 +1,182 @@
 #include "solver/registry.h"
 
+#include <algorithm>
+#include <stdexcept>
+
+#include "harness/base/names.h"
 #include "solver/baselines/baselines.h"
+#include "solver/direct_options.h"
+#include "solver/direct_solver.h"
 
 namespace cleave {
 namespace {
 
-constexpr StrategyRow kStrategies[] = {
-    {{"pivot", "block principal pivoting, hands over to interior-point when stuck",
-      "Judice and Pires 1994; Murty 1974"},
-     nullptr,
-     make_pivot},
-    {{"newton", "semi-smooth Newton with exact line search", "Qi and Sun 1993; Todorov 2014"},
-     nullptr,
-     make_newton},
-    {{"interior-point", "Mehrotra predictor-corrector with an exact last solve", "Mehrotra 1992"},
-     nullptr,
-     make_interior_point},
-    {{"alternate", "parts and interface in turn, as published; may not converge",
-      "Peiret et al. 2019, section 5"},
-     "schur-rows",
-     make_alternate},
-    {{"auto", "chosen per step from row kinds and compliance", "solver/strategies/automatic.h"},
-     nullptr,
-     nullptr},
-};
+using namespace parameters;
 
-constexpr KernelRow kKernels[] = {
-    {{"monolithic", "one sparse block Cholesky of M + J^T D J", "Duff and Reid 1983"},
-     false,
-     "monolithic",
-     make_monolithic_kernel},
-    {{"schur-rows", "parts in parallel, dense interface over the cut rows",
-      "Peiret et al. 2019; Liu and Andrews 2022"},
-     true,
-     "schur-rows",
-     make_schur_rows_kernel},
-    {{"schur-bodies", "interiors in parallel, interface on a vertex cover of the cut",
-      "solver/kernels/schur_bodies.cpp"},
-     true,
-     "schur-bodies",
-     make_schur_bodies_kernel},
-    {{"dense", "one dense matrix, the oracle of the tests", "-"}, false, "dense", make_dense_kernel},
-    {{"auto", "chosen per step", "solver/strategies/automatic.h"},
-     false,
-     "monolithic",
-     make_monolithic_kernel},
-};
+// The first row of that name, or nullptr.
+template <class Row>
+const Row* find_row(std::span<const Row> table, std::string_view name) {
+  const auto found =
+      std::ranges::find(table, name, [](const Row& row) { return std::string_view(row.name); });
+  return found == table.end() ? nullptr : &*found;
+}
 
-constexpr SolverRow kSolvers[] = {
-    {{"dense", "pivot:dense, the oracle", "-"}, "pivot", "dense", nullptr},
-    {{"monolithic", "pivot:monolithic", "-"}, "pivot", "monolithic", nullptr},
-    {{"schur", "pivot:schur-rows, the paper's parallel solver", "Liu and Andrews 2022, section 2"},
-     "pivot",
-     "schur-rows",
-     nullptr},
-    {{"exact", "auto:auto", "-"}, "auto", "auto", nullptr},
-    {{"pgs", "projected Gauss-Seidel, --sweeps sweeps in natural order", "Catto 2005"},
-     nullptr,
-     nullptr,
-     make_pgs},
-};
+void append_new(const std::vector<Parameter>& more, std::vector<Parameter>& to) {
+  for (const Parameter& parameter : more)
+    if (std::ranges::count(to, parameter.name, &Parameter::name) == 0) to.push_back(parameter);
+}
+
+bool has(const AlgorithmEntry& row, const std::string& parameter) {
+  return std::ranges::count(row.parameters, parameter, &Parameter::name) > 0;
+}
+
+// Who of all rows has a parameter.
+std::string owners(const std::string& parameter) {
+  std::vector<std::string> names;
+  for (const StrategyRow& row : strategy_table())
+    if (has(row, parameter)) names.push_back(std::string("strategy ") + row.name);
+  for (const KernelRow& row : kernel_table())
+    if (has(row, parameter)) names.push_back(std::string("kernel ") + row.name);
+  for (const SolverRow& row : solver_table())
+    if (has(row, parameter)) names.push_back(row.name);
+  return joined(names);
+}
 
 }  // namespace
 
-std::span<const StrategyRow> strategy_table() { return kStrategies; }
-std::span<const KernelRow> kernel_table() { return kKernels; }
-std::span<const SolverRow> solver_table() { return kSolvers; }
+std::span<const StrategyRow> strategy_table() {
+  static const StrategyRow table[] = {
+      {{"pivot",
+        "block principal pivoting, hands over to interior-point when stuck",
+        "Judice and Pires 1994; Murty 1974",
+        {max_iterations(), predictor_sweeps()}},
+       nullptr,
+       make_pivot},
+      {{"newton",
+        "semi-smooth Newton with exact line search",
+        "Qi and Sun 1993; Todorov 2014",
+        {max_iterations()}},
+       nullptr,
+       make_newton},
+      {{"interior-point",
+        "Mehrotra predictor-corrector with an exact last solve",
+        "Mehrotra 1992",
+        {max_iterations()}},
+       nullptr,
+       make_interior_point},
+      {{"alternate",
+        "parts and interface in turn, as published; may not converge",
+        "Peiret et al. 2019, section 5",
+        {max_iterations()}},
+       "schur-rows",
+       make_alternate},
+      {{"auto",
+        "chosen per step from row kinds and compliance",
+        "solver/strategies/automatic.h",
+        {max_iterations(), predictor_sweeps()}},
+       nullptr,
+       nullptr},
+  };
+  return table;
+}
+
+std::span<const KernelRow> kernel_table() {
+  static const KernelRow table[] = {
+      {{"monolithic", "one sparse block Cholesky of M + J^T D J", "Duff and Reid 1983", {reuse_analysis()}},
+       false,
+       "monolithic",
+       make_monolithic_kernel},
+      {{"schur-rows",
+        "parts in parallel, dense interface over the cut rows",
+        "Peiret et al. 2019; Liu and Andrews 2022",
+        {reuse_analysis()}},
+       true,
+       "schur-rows",
+       make_schur_rows_kernel},
+      {{"schur-bodies",
+        "interiors in parallel, interface on a vertex cover of the cut",
+        "solver/kernels/schur_bodies.cpp",
+        {reuse_analysis()}},
+       true,
+       "schur-bodies",
+       make_schur_bodies_kernel},
+      {{"dense", "one dense matrix, the oracle of the tests", "-", {reuse_analysis()}},
+       false,
+       "dense",
+       make_dense_kernel},
+      {{"auto", "chosen per step", "solver/strategies/automatic.h", {reuse_analysis()}},
+       false,
+       "monolithic",
+       make_monolithic_kernel},
+  };
+  return table;
+}
+
+std::span<const SolverRow> solver_table() {
+  static const SolverRow table[] = {
+      {{"dense", "pivot:dense, the oracle", "-"}, "pivot", "dense", nullptr},
+      {{"monolithic", "pivot:monolithic", "-"}, "pivot", "monolithic", nullptr},
+      {{"schur", "pivot:schur-rows, the paper's parallel solver", "Liu and Andrews 2022, section 2"},
+       "pivot",
+       "schur-rows",
+       nullptr},
+      {{"exact", "auto:auto", "-"}, "auto", "auto", nullptr},
+      {{"pgs", "projected Gauss-Seidel in natural order", "Catto 2005", {sweeps()}},
+       nullptr,
+       nullptr,
+       make_pgs},
+  };
+  return table;
+}
 
 bool runs_on(const StrategyRow& strategy, const KernelRow& kernel) {
-  return strategy.only_kernel == nullptr || std::string_view(strategy.only_kernel) == kernel.entry.name;
+  return strategy.only_kernel == nullptr || std::string_view(strategy.only_kernel) == kernel.name;
 }
 
 std::vector<std::string> all_solver_names() {
-  std::vector<std::string> names;
-  for (const SolverRow& row : kSolvers) names.emplace_back(row.entry.name);
-  for (const StrategyRow& strategy : kStrategies) {
-    for (const KernelRow& kernel : kKernels) {
+  std::vector<std::string> names = names_of(solver_table());
+  for (const StrategyRow& strategy : strategy_table()) {
+    for (const KernelRow& kernel : kernel_table()) {
       if (!runs_on(strategy, kernel)) continue;
-      names.push_back(std::string(strategy.entry.name) + ":" + kernel.entry.name);
+      names.push_back(std::string(strategy.name) + ":" + kernel.name);
     }
   }
   return names;
+}
+
+SolverHalves solver_halves(const std::string& name) {
+  const std::size_t colon = name.find(':');
+  if (colon != std::string::npos) return {name.substr(0, colon), name.substr(colon + 1)};
+  const SolverRow* row = find_row(solver_table(), name);
+  return row != nullptr && row->strategy != nullptr ? SolverHalves{row->strategy, row->kernel}
+                                                    : SolverHalves{};
+}
+
+std::vector<Parameter> solver_parameters(const std::string& name) {
+  std::vector<Parameter> parameters;
+  if (const SolverRow* row = find_row(solver_table(), name)) parameters = row->parameters;
+  const SolverHalves halves = solver_halves(name);
+  if (const StrategyRow* row = find_row(strategy_table(), halves.strategy))
+    append_new(row->parameters, parameters);
+  if (const KernelRow* row = find_row(kernel_table(), halves.kernel)) append_new(row->parameters, parameters);
+  return parameters;
+}
+
+std::unique_ptr<StepSolver> make_step_solver(const Algorithm& algorithm, const SolveOptions& options) {
+  const SolverRow* row = find_row(solver_table(), algorithm.name);
+  if (row != nullptr && row->make != nullptr) return row->make(options, algorithm.settings);
+  const SolverHalves halves = solver_halves(algorithm.name);
+  std::unique_ptr<StepSolver> solver =
+      make_direct_solver(halves.strategy, halves.kernel, options, algorithm.settings);
+  if (solver == nullptr)
+    throw std::invalid_argument("solver: " + unknown_name_text(algorithm.name, all_solver_names()));
+  return solver;
+}
+
+std::unique_ptr<StepSolver> make_step_solver(const std::string& text, const SolveOptions& options) {
+  const std::string name = algorithm_name(text);
+  check_name("solver", name, all_solver_names());
+  return make_step_solver(read_algorithm("solver", text, solver_parameters(name), {}, owners), options);
 }
 
 }  // namespace cleave

@@ -8,37 +8,30 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/base/algorithm.h"
 #include "solver/kernels/kernel.h"
 #include "solver/step_solver.h"
 #include "solver/strategies/strategy.h"
 
 namespace cleave {
 
-struct SolverEntry {
-  const char* name;
-  const char* help;       // one line
-  const char* reference;  // where it is described
+struct StrategyRow : AlgorithmEntry {
+  const char* only_kernel;                                      // the one kernel it runs on; nullptr: any
+  std::unique_ptr<Strategy> (*make)(const Settings& settings);  // nullptr: chosen per step (auto)
 };
 
-struct StrategyRow {
-  SolverEntry entry;
-  const char* only_kernel;              // the one kernel it runs on; nullptr: any
-  std::unique_ptr<Strategy> (*make)();  // nullptr: chosen per step (auto)
-};
-
-struct KernelRow {
-  SolverEntry entry;
+struct KernelRow : AlgorithmEntry {
   bool splits;           // uses the partition
   const char* resolved;  // what runs under this name
-  std::unique_ptr<Kernel> (*make)();
+  std::unique_ptr<Kernel> (*make)(const Settings& settings);
 };
 
 // Short names: either an alias of strategy:kernel, or a baseline of its own.
-struct SolverRow {
-  SolverEntry entry;
+struct SolverRow : AlgorithmEntry {
   const char* strategy;  // of an alias
   const char* kernel;
-  std::unique_ptr<StepSolver> (*make)(const SolveOptions& options);  // of a baseline
+  std::unique_ptr<StepSolver> (*make)(const SolveOptions& options,
+                                      const Settings& settings);  // of a baseline
 };
 
 std::span<const StrategyRow> strategy_table();
@@ -48,7 +41,24 @@ std::span<const SolverRow> solver_table();
 // Whether strategy:kernel is a solver.
 bool runs_on(const StrategyRow& strategy, const KernelRow& kernel);
 
-// Every name make_step_solver accepts: the short names, then every allowed strategy:kernel.
+// Every name of a solver: the short names, then every allowed strategy:kernel.
 std::vector<std::string> all_solver_names();
+
+// The two halves of a name; both empty for a baseline and for a name that is none.
+struct SolverHalves {
+  std::string strategy, kernel;
+};
+SolverHalves solver_halves(const std::string& name);
+
+// What a solver of this name lets its users choose: the parameters of its strategy and its kernel, or its
+// own.
+std::vector<Parameter> solver_parameters(const std::string& name);
+
+// From a short name ("schur") or strategy:kernel ("interior-point:monolithic"), with parameters where wanted
+// ("pgs@sweeps=100"). Throws std::invalid_argument with one line that names the text and what is allowed.
+std::unique_ptr<StepSolver> make_step_solver(const std::string& text, const SolveOptions& options = {});
+
+// The same from complete settings. Throws std::invalid_argument for a name that is none.
+std::unique_ptr<StepSolver> make_step_solver(const Algorithm& algorithm, const SolveOptions& options);
 
 }  // namespace cleave

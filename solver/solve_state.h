@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/direct_options.h"
 #include "solver/kernels/kernel.h"
 #include "solver/prepared_step.h"
-#include "solver/step_solver.h"
 
 namespace cleave {
 
@@ -20,7 +20,7 @@ enum class RowState : std::uint8_t { free, lower, upper, held };
 inline constexpr double kFactoredCompliance = 3e-13;
 
 struct SolveState {
-  SolveState(const SolveOptions& solve_options, StageClock& clock)
+  SolveState(const DirectOptions& solve_options, StageClock& clock)
       : options(solve_options), tasks(clock, solve_options.threads) {}
 
   // Binds the state to a problem; impulses start from the clamped warm start.
@@ -57,7 +57,7 @@ struct SolveState {
 
   double residual() const { return step->residual(impulse, slack); }
 
-  SolveOptions options;
+  DirectOptions options;
   ParallelTasks tasks;
   const PreparedStep* step = nullptr;
   Kernel* kernel = nullptr;

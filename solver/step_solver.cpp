@@ -1,10 +1,6 @@
 #include "solver/step_solver.h"
 
 #include <cassert>
-#include <stdexcept>
-
-#include "solver/direct_solver.h"
-#include "solver/registry.h"
 
 namespace cleave {
 
@@ -35,20 +31,6 @@ SolveSummary StepSolver::solve(const StepProblem& problem, std::span<const int> 
     return summary;
   }
   return do_solve(problem, part_of_body, solution);
-}
-
-std::unique_ptr<StepSolver> make_step_solver(std::string_view name, const SolveOptions& options) {
-  for (const SolverRow& row : solver_table()) {
-    if (row.entry.name != name) continue;
-    return row.make != nullptr ? row.make(options) : make_direct_solver(row.strategy, row.kernel, options);
-  }
-  const std::size_t colon = name.find(':');
-  std::unique_ptr<StepSolver> solver;
-  if (colon != std::string_view::npos) {
-    solver = make_direct_solver(name.substr(0, colon), name.substr(colon + 1), options);
-  }
-  if (solver == nullptr) throw std::invalid_argument(std::string(name));
-  return solver;
 }
 
 }  // namespace cleave

@@ -21,13 +21,10 @@ const char* to_string(SolveStatus status);
 // Whether a solve with this status left impulses that can be judged, and numbers about itself.
 bool has_result(SolveStatus status);
 
+// Of every solver. What one of them alone has are parameters of its registry row.
 struct SolveOptions {
   int threads = 1;                // >= 1
   double target_m_per_s = 1e-11;  // residual aimed at; exact is judged at kExactLimit
-  int max_iterations = 100;       // of every strategy that runs; a miss is a status, not a result
-  int predictor_sweeps = 40;      // Gauss-Seidel sweeps that pivot starts from
-  int sweeps = 5;                 // of pgs
-  bool reuse_analysis = false;    // keep the symbolic analysis while parts stay and rows fit its pattern
 };
 
 struct SolveSummary {
@@ -40,6 +37,7 @@ struct SolveSummary {
   int factorizations = 0;         // numeric factorisations of the whole system
   int fallbacks = 0;              // hand-overs from one strategy to the next
   int refinements = 0;            // iterative refinement steps at the end
+  int engine_messages = 0;        // given by a foreign engine while it solved
   int interface_unknowns = 0;     // size of the interface system (rows, or 6 x bodies for schur-bodies)
   double factor_mflop_local = 0;  // per factorisation, without padding, subsystem interiors
   double factor_mflop_interface = 0;
@@ -63,9 +61,5 @@ class StepSolver {
   virtual SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
                                 Solution& solution) = 0;
 };
-
-// By name: a short name of registry.h ("schur") or strategy:kernel ("interior-point:monolithic"). Throws
-// std::invalid_argument for an unknown name (message: the name only; callers add the choices).
-std::unique_ptr<StepSolver> make_step_solver(std::string_view name, const SolveOptions& options);
 
 }  // namespace cleave

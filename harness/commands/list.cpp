@@ -1,38 +1,40 @@
-// cleave list [what]: the registry tables as aligned text on stdout.
+// cleave list [what]: the registry tables as aligned text on stdout, each algorithm with its parameters.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
 
+#include "harness/base/names.h"
 #include "harness/commands/command.h"
-#include "harness/friction.h"
-#include "harness/nearest_name.h"
-#include "harness/solver_choices.h"
-#include "harness/step_record.h"
-#include "partition/registry.h"
-#include "scenarios/scene.h"
-#include "solver/registry.h"
+#include "harness/experiment/algorithms.h"
+#include "harness/experiment/step_record.h"
 
 namespace cleave {
 namespace {
 
 struct Line {
   std::string name, help, reference;
+  bool is_parameter = false;
 };
 
-struct Listing {
-  const char* name;
-  std::vector<Line> (*lines)();
-};
+Line parameter_line(const Parameter& parameter) {
+  const std::string value =
+      parameter.default_value.empty() ? "must be given" : parameter.default_value + " by default";
+  return {"@" + parameter.name, parameter.help + "; " + allowed_text(parameter) + ", " + value,
+          parameter.source, true};
+}
 
-template <class Table>
-std::vector<Line> lines_of(const Table& table) {
+// The registries that an option names its algorithms from.
+std::vector<Line> algorithm_lines(const std::string& plural) {
+  std::string option;
+  for (const AlgorithmKind& kind : algorithm_kinds())
+    if (kind.plural == plural) option = kind.option;
   std::vector<Line> lines;
-  for (const auto& row : table) {
-    if constexpr (requires { row.entry.name; }) {
-      lines.push_back({row.entry.name, row.entry.help, row.entry.reference});
-    } else {
-      lines.push_back({row.name, row.help, row.reference});
+  for (const AlgorithmKind& kind : algorithm_kinds()) {
+    if (kind.option != option) continue;
+    for (const AlgorithmEntry& entry : kind.entries) {
+      lines.push_back({entry.name, entry.help, entry.reference});
+      for (const Parameter& parameter : entry.parameters) lines.push_back(parameter_line(parameter));
     }
   }
   return lines;
@@ -45,29 +47,36 @@ std::vector<Line> column_lines() {
   return lines;
 }
 
-constexpr Listing kListings[] = {
-    {"scenes", [] { return lines_of(scenes()); }},
-    {"partitioners", [] { return lines_of(partitioners()); }},
-    {"refiners", [] { return lines_of(refiners()); }},
-    {"solvers", [] { return lines_of(solver_entries()); }},
-    {"strategies", [] { return lines_of(strategy_table()); }},
-    {"kernels", [] { return lines_of(kernel_table()); }},
-    {"frictions", [] { return lines_of(friction_models()); }},
-    {"columns", column_lines},
-};
+// One table an option, and the columns.
+std::vector<std::string> listings() {
+  std::vector<std::string> names, options;
+  for (const AlgorithmKind& kind : algorithm_kinds()) {
+    if (std::ranges::count(options, kind.option) > 0) continue;
+    options.push_back(kind.option);
+    names.push_back(kind.plural);
+  }
+  names.push_back("columns");
+  return names;
+}
 
 void print_names(const std::vector<Line>& lines) {
-  for (const Line& line : lines) std::puts(line.name.c_str());
+  for (const Line& line : lines)
+    if (!line.is_parameter) std::puts(line.name.c_str());
 }
 
 void print_table(const char* title, const std::vector<Line>& lines) {
   int name_width = 0, help_width = 0;
   for (const Line& line : lines) {
+    if (line.is_parameter) continue;
     name_width = std::max(name_width, static_cast<int>(line.name.size()));
     if (!line.reference.empty()) help_width = std::max(help_width, static_cast<int>(line.help.size()));
   }
   std::printf("%s\n", title);
   for (const Line& line : lines) {
+    if (line.is_parameter) {
+      std::printf("  %-*s    %s: %s\n", name_width, "", line.name.c_str(), line.help.c_str());
+      continue;
+    }
     std::printf("  %-*s  ", name_width, line.name.c_str());
     if (line.reference.empty() || line.reference == "-") {
       std::printf("%s\n", line.help.c_str());
@@ -78,16 +87,18 @@ void print_table(const char* title, const std::vector<Line>& lines) {
 }
 
 int list(const std::string& what, bool names_only) {
-  const std::vector<std::string> choices = names_of(std::span(kListings));
+  const std::vector<std::string> choices = listings();
   if (!what.empty() && std::ranges::find(choices, what) == choices.end())
     throw std::invalid_argument(unknown_name_text(what, choices));
-  for (const Listing& listing : kListings) {
+  for (const std::string& name : choices) {
+    const bool is_columns = name == choices.back();
     // The columns are many; they are shown when asked for.
-    if (what.empty() ? listing.name == std::string("columns") : listing.name != what) continue;
+    if (what.empty() ? is_columns : name != what) continue;
+    const std::vector<Line> lines = is_columns ? column_lines() : algorithm_lines(name);
     if (names_only) {
-      print_names(listing.lines());
+      print_names(lines);
     } else {
-      print_table(listing.name, listing.lines());
+      print_table(name.c_str(), lines);
     }
   }
   return kExitOk;
@@ -101,7 +112,7 @@ std::function<int()> declare_list(CLI::App& app, const std::vector<std::string>&
     bool names_only = false;
   };
   const auto options = std::make_shared<Options>();
-  app.add_option("what", options->what, joined(names_of(std::span(kListings)), "|"));
+  app.add_option("what", options->what, joined(listings(), "|"));
   app.add_flag("--names", options->names_only, "names only, one a line");
   return [options] { return list(options->what, options->names_only); };
 }

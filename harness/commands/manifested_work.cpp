@@ -5,6 +5,8 @@
 #include <cstdio>
 
 #include "harness/commands/command.h"
+#include "harness/experiment/step_record.h"
+#include "harness/world/ode_world.h"
 
 namespace cleave {
 namespace {
@@ -28,11 +30,27 @@ int exit_code(const RunSummary& summary) {
 
 const std::atomic<bool>& stop_requested() { return stop; }
 
-int do_manifested_work(Manifest& manifest, const std::function<RunSummary()>& work) {
+int do_manifested_work(const std::filesystem::path& directory, const WorkDescription& description,
+                       const std::function<RunSummary()>& work) {
   stop_on_signals();
-  const RunSummary summary = manifest.around(work);
+  RunSummary summary;
+  Manifest manifest(directory / "manifest.json", description);
+  manifest.around([&] {
+    summary = work();
+    return WorkResult{summary.interrupted, summary.counts()};
+  });
   std::fprintf(stderr, "%s%s", summary.text().c_str(), summary.interrupted ? "interrupted\n" : "");
   return exit_code(summary);
+}
+
+WorkDescription describe_work(const std::string& command, const std::vector<std::string>& argv,
+                              const RunOptions& options, const std::vector<OptionValue>& values) {
+  return {
+      command, argv, run_id(values), values, named_algorithms(options), columns(), {{"ode", ode_version()}}};
+}
+
+void print_left_out(const RunOptions& options) {
+  for (const std::string& line : options.left_out) std::fprintf(stderr, "%s\n", line.c_str());
 }
 
 }  // namespace cleave

@@ -1,23 +1,22 @@
 // cleave replay: solves recorded problems with every combination.
 #include <algorithm>
-#include <array>
 #include <memory>
 #include <set>
 #include <stdexcept>
-#include <string_view>
 
-#include "harness/combination.h"
+#include "harness/base/names.h"
+#include "harness/base/progress.h"
+#include "harness/base/stopwatch.h"
 #include "harness/commands/command.h"
 #include "harness/commands/manifested_work.h"
 #include "harness/commands/run_command_line.h"
-#include "harness/csv_recorder.h"
-#include "harness/nearest_name.h"
-#include "harness/options.h"
-#include "harness/output_directory.h"
-#include "harness/problem_file.h"
-#include "harness/progress.h"
-#include "harness/step_columns.h"
-#include "harness/stopwatch.h"
+#include "harness/commands/stored_partition.h"
+#include "harness/experiment/combination.h"
+#include "harness/experiment/options.h"
+#include "harness/experiment/step_columns.h"
+#include "harness/files/csv_recorder.h"
+#include "harness/files/output_directory.h"
+#include "harness/files/problem_file.h"
 #include "solver/parallel_tasks.h"
 
 namespace cleave {
@@ -26,33 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 using Given = std::map<std::string, std::string>;
 
-// What concerns combinations; everything about the step itself comes from the files.
-bool has_option(const std::string& name) {
-  constexpr std::array<std::string_view, 22> with = {"partitioner",
-                                                     "refiner",
-                                                     "solver",
-                                                     "strategy",
-                                                     "kernel",
-                                                     "sweeps",
-                                                     "predictor-sweeps",
-                                                     "max-iterations",
-                                                     "repeats",
-                                                     "threads",
-                                                     "out",
-                                                     "force",
-                                                     "max-bodies",
-                                                     "tau-mr",
-                                                     "tau-mix",
-                                                     "max-growth",
-                                                     "edge-weight",
-                                                     "degree",
-                                                     "as-printed",
-                                                     "degree-scope",
-                                                     "skip-small-islands",
-                                                     "reuse-analysis"};
-  return std::ranges::find(with, name) != with.end();
-}
-
 struct ReplayOptions {
   RunOptions solve;
   std::vector<std::string> files;
@@ -60,14 +32,23 @@ struct ReplayOptions {
   bool write_solutions = false;
 };
 
+// Everything about the step itself comes from the files.
+bool in_replay(const std::string& option) {
+  for (const OptionSpec& spec : run_option_specs())
+    if (spec.name == option) return spec.commands.replay;
+  for (const CommonParameter& common : common_parameters())
+    if (common.parameter.name == option) return common.in_replay;
+  return false;
+}
+
 std::vector<OptionValue> values_of(const ReplayOptions& options) {
   std::vector<OptionValue> values;
   for (const OptionValue& value : option_values(options.solve))
-    if (has_option(value.name)) values.push_back(value);
+    if (in_replay(value.name)) values.push_back(value);
   const auto flag = [](bool set) { return std::string(set ? "true" : "false"); };
-  values.push_back({"cold", OptionSpec::Kind::flag, flag(options.cold)});
-  values.push_back({"write-solutions", OptionSpec::Kind::flag, flag(options.write_solutions)});
-  values.push_back({"files", OptionSpec::Kind::text, joined(options.files, " ")});
+  values.push_back({"cold", OptionKind::flag, flag(options.cold), About::problem});
+  values.push_back({"write-solutions", OptionKind::flag, flag(options.write_solutions)});
+  values.push_back({"files", OptionKind::text, joined(options.files, " "), About::bookkeeping, false});
   return values;
 }
 
@@ -109,8 +90,9 @@ StepRecord columns_of(const ProblemFile& file, const std::string& path, const Re
   return row;
 }
 
-void store(const StepRecord& row, const Outcome& outcome, const RunOptions& options, ProblemFile& file) {
-  const std::string label = combination_label(row.partitioner, row.refiner, row.solver);
+void store(const Combination& combination, const StepRecord& row, const Outcome& outcome,
+           bool skip_small_islands, ProblemFile& file) {
+  const std::string label = combination.name().label();
   file.solutions[label] = {row.solver,
                            row.strategy,
                            row.kernel,
@@ -121,19 +103,20 @@ void store(const StepRecord& row, const Outcome& outcome, const RunOptions& opti
                            outcome.verdict.velocity};
   file.partitions.erase(label);
   if (!outcome.part_of_body.empty())
-    file.partitions[label] = {row.partitioner, row.refiner, options, outcome.part_of_body};
+    file.partitions[label] = stored_partition(combination.partitioner(), combination.refiner(),
+                                              skip_small_islands, outcome.part_of_body);
 }
 
 class Replay {
  public:
   // Makes every solver, partitioner and refiner.
   explicit Replay(const ReplayOptions& options)
-      : options_(options), combinations_(make_combinations(options.solve)) {}
+      : options_(options), combinations_(make_combinations(options.solve, no_world_)) {}
 
   RunSummary run(const fs::path& out) {
     Stopwatch watch;
     start_threads(options_.solve.threads);
-    CsvRecorder recorder(out / "steps.csv");
+    CsvRecorder recorder(out / "steps.csv", csv_header());
     ProgressLine line("replay");
     const int total = static_cast<int>(options_.files.size());
     for (int i = 0; i < total && !stop_requested(); ++i) {
@@ -153,16 +136,18 @@ class Replay {
     if (options_.cold) std::ranges::fill(problem.warm_impulse, 0.0);
     const std::vector<Outcome> outcomes = measure_all(combinations_, problem, summary_.measured_steps, rows);
     if (options_.write_solutions) {
-      for (std::size_t i = 0; i < rows.size(); ++i) store(rows[i], outcomes[i], options_.solve, file);
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        store(combinations_[i], rows[i], outcomes[i], options_.solve.skip_small_islands, file);
       write_problem_file(out / fs::path(path).filename(), file);
     }
     for (const StepRecord& row : rows) summary_.add(row);
     ++summary_.measured_steps;
     if (rows.front().contacts > 0) ++summary_.measured_with_contacts;
-    recorder.write(rows);
+    recorder.append(csv_lines(rows));
   }
 
   const ReplayOptions& options_;
+  const StepContext no_world_;
   std::vector<Combination> combinations_;
   RunSummary summary_;
 };
@@ -172,10 +157,11 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& argv) {
   for (const std::string& file : options.files) read_problem_file(file);  // before anything is created
   if (options.write_solutions) check_names(options);
   check_output_directory(options.solve.out, options.solve.force, files_written(options));
+  print_left_out(options.solve);
   Replay work(options);
   const fs::path out = create_output_directory(options.solve.out);
-  Manifest manifest(out / "manifest.json", "replay", argv, values_of(options));
-  return do_manifested_work(manifest, [&] { return work.run(out); });
+  return do_manifested_work(out, describe_work("replay", argv, options.solve, values_of(options)),
+                            [&] { return work.run(out); });
 }
 
 }  // namespace
@@ -187,7 +173,7 @@ std::function<int()> declare_replay(CLI::App& app, const std::vector<std::string
   };
   const auto state = std::make_shared<State>();
   app.add_option("files", state->options.files, "problem files that cleave record wrote")->type_name("FILES");
-  declare_run_options(app, state->given, has_option);
+  declare_run_options(app, state->given, &CommandSet::replay);
   app.add_flag("--cold", state->options.cold, "start from zero impulses in place of the recorded ones");
   app.add_flag("--write-solutions", state->options.write_solutions,
                "copy each file to --out with every solution and partition in it");

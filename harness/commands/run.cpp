@@ -2,13 +2,13 @@
 #include <cstdio>
 #include <memory>
 
-#include "harness/build_info.h"
 #include "harness/commands/command.h"
 #include "harness/commands/run_command_line.h"
 #include "harness/commands/simulate.h"
-#include "harness/json_writer.h"
-#include "harness/options.h"
-#include "harness/output_directory.h"
+#include "harness/experiment/options.h"
+#include "harness/files/build_info.h"
+#include "harness/files/json_writer.h"
+#include "harness/files/output_directory.h"
 
 namespace cleave {
 namespace {
@@ -49,8 +49,7 @@ int run(const std::map<std::string, std::string>& given, bool print_key,
 std::function<int()> declare_run(CLI::App& app, const std::vector<std::string>& argv) {
   const auto given = std::make_shared<std::map<std::string, std::string>>();
   const auto print_key = std::make_shared<bool>(false);
-  declare_run_options(app, *given);
-  declare_scene_options(app, *given);
+  declare_run_options(app, *given, &CommandSet::run);
   app.add_flag("--print-key", *print_key, "run nothing; print what its results would be known by");
   return [given, print_key, argv] { return run(*given, *print_key, argv); };
 }

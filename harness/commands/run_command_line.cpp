@@ -1,49 +1,98 @@
 #include "harness/commands/run_command_line.h"
 
-#include "harness/options.h"
+#include "harness/base/names.h"
 
 namespace cleave {
 namespace {
+
+using Given = std::map<std::string, std::string>;
+
+constexpr const char* kExample =
+    "A parameter of one algorithm alone is written behind its name, so that several settings run side by "
+    "side on\n"
+    "the same problems:\n"
+    "  --partitioner mindp@max-bodies=25,mindp@max-bodies=50 --solver pgs@sweeps=30,pgs@sweeps=300,schur\n"
+    "As an option of its own (--max-bodies 30) it holds for all algorithms of the run that have it.";
 
 std::string default_text(const std::string& value) {
   return value.empty() || value == "nan" ? "" : " (" + value + ")";
 }
 
-}  // namespace
+CLI::Option* declare(CLI::App& app, Given& given, const std::string& name, const std::string& placeholder,
+                     const std::string& help) {
+  return app
+      .add_option_function<std::string>(
+          "--" + name, [&given, name](const std::string& text) { given[name] = text; }, help)
+      ->type_name(placeholder);
+}
 
-void declare_run_options(CLI::App& app, std::map<std::string, std::string>& given, HasOption has) {
+CLI::Option* declare_flag(CLI::App& app, Given& given, const std::string& name, const std::string& help) {
+  return app.add_flag_callback(
+      "--" + name, [&given, name] { given[name] = "true"; }, help);
+}
+
+void declare_table(CLI::App& app, Given& given, bool CommandSet::*command) {
   const RunOptions defaults = default_run_options();
   for (const OptionSpec& spec : run_option_specs()) {
-    if (!has(spec.name)) continue;
-    const std::string dashed = "--" + spec.name;
-    if (spec.kind == OptionSpec::Kind::flag) {
-      app.add_flag_callback(
-          dashed, [&given, name = spec.name] { given[name] = "true"; }, spec.help);
-      continue;
+    if (!(spec.commands.*command)) continue;
+    if (spec.kind == OptionKind::flag) {
+      declare_flag(app, given, spec.name, spec.help);
+    } else {
+      declare(app, given, spec.name, spec.placeholder, spec.help + default_text(spec.get(defaults)));
     }
-    app.add_option_function<std::string>(
-           dashed, [&given, name = spec.name](const std::string& text) { given[name] = text; },
-           spec.help + default_text(spec.get(defaults)))
-        ->type_name(spec.placeholder);
   }
 }
 
-void declare_scene_options(CLI::App& app, std::map<std::string, std::string>& given) {
+std::string placeholder_of(const Parameter& parameter) {
+  switch (parameter.kind) {
+    case Parameter::Kind::integer:
+      return "N";
+    case Parameter::Kind::word:
+      return joined(parameter.words, "|");
+    default:
+      return "X";
+  }
+}
+
+bool is_number(const Parameter& parameter) {
+  return parameter.kind == Parameter::Kind::integer || parameter.kind == Parameter::Kind::number;
+}
+
+void declare_parameters(CLI::App& app, Given& given, bool with_world) {
+  for (const auto& [parameter, owners, about, in_replay] : common_parameters()) {
+    if (!with_world && !in_replay) continue;
+    const std::string range = is_number(parameter) ? ", in " + allowed_text(parameter) : "";
+    const std::string help =
+        parameter.help + range + default_text(parameter.default_value) + "; of " + owners;
+    CLI::Option* option = parameter.kind == Parameter::Kind::flag
+                              ? declare_flag(app, given, parameter.name, help)
+                              : declare(app, given, parameter.name, placeholder_of(parameter), help);
+    option->group("Parameters of algorithms");
+  }
+}
+
+// One option per parameter name of any scene.
+void declare_scenes(CLI::App& app, Given& given) {
   std::map<std::string, std::string> help;  // by name: several scenes may share a parameter
   for (const SceneEntry& scene : scenes()) {
-    for (const SceneParameter& parameter : scene.parameters) {
+    for (const Parameter& parameter : scene.parameters) {
+      if (parameter.kind == Parameter::Kind::path) continue;
       std::string& text = help[parameter.name];
       if (text.empty()) text = parameter.help;
-      const char* const value = parameter.default_value == nullptr ? "required" : parameter.default_value;
-      text += std::string("; ") + scene.name + " (" + value + ")";
+      text += std::string("; ") + scene.name + " (" + parameter.default_value + ")";
     }
   }
-  for (const auto& [name, text] : help) {
-    app.add_option_function<std::string>(
-           "--" + name, [&given, name = name](const std::string& value) { given[name] = value; }, text)
-        ->type_name("X")
-        ->group("Options of scenes");
-  }
+  for (const auto& [name, text] : help) declare(app, given, name, "X", text)->group("Options of scenes");
+}
+
+}  // namespace
+
+void declare_run_options(CLI::App& app, Given& given, bool CommandSet::*command) {
+  const bool with_world = command != &CommandSet::replay;
+  declare_table(app, given, command);
+  declare_parameters(app, given, with_world);
+  if (with_world) declare_scenes(app, given);
+  app.footer(kExample);
 }
 
 }  // namespace cleave

@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "harness/options.h"
-#include "harness/simulation.h"
+#include "harness/experiment/options.h"
+#include "harness/experiment/simulation.h"
 
 namespace cleave {
 
-// Makes everything that can be refused, then creates the directory, simulates into its steps.csv and
-// manifest.json, and returns the exit code.
+// observe: not beside --record-motion, which observes itself. Makes everything that can be refused, then
+// creates the directory, simulates into its steps.csv and manifest.json, and returns the exit code.
 int simulate(const std::string& command, const std::vector<std::string>& argv, const RunOptions& options,
              Simulation::Observer observe = {});
 

@@ -5,14 +5,17 @@
 #include <cstdio>
 #include <functional>
 #include <numeric>
+#include <optional>
+#include <stdexcept>
 
-#include "harness/hash.h"
-#include "harness/nearest_name.h"
-#include "harness/options_text.h"
-#include "harness/problem_graph.h"
-#include "harness/splitter.h"
-#include "harness/step_columns.h"
-#include "partition/registry.h"
+#include "harness/base/hash.h"
+#include "harness/base/numbers.h"
+#include "harness/commands/stored_partition.h"
+#include "harness/experiment/algorithms.h"
+#include "harness/experiment/problem_graph.h"
+#include "harness/experiment/splitter.h"
+#include "harness/experiment/step_columns.h"
+#include "solver/problem_hash.h"
 #include "solver/residual.h"
 
 namespace cleave {
@@ -59,19 +62,16 @@ std::string metrics_text(const PartitionMetrics& metrics) {
 
 void check_split(const StepProblem& problem, const StoredPartition& partition, const std::string& subject,
                  CheckList& list) {
-  const auto known = [](const std::string& name, const std::vector<std::string>& names) {
-    return std::ranges::find(names, name) != names.end();
-  };
   const std::string counted = metrics_text(measure_partition(body_graph_of(problem), partition.part_of_body));
-  if (!known(partition.partitioner, names_of(partitioners())) ||
-      !known(partition.refiner, names_of(refiners()))) {
-    list.add(true, subject,
-             counted + "; not split again: " + partition.partitioner + "+" + partition.refiner +
-                 " is not one of ours");
+  std::optional<Splitter> splitter;
+  try {
+    const SplitSetup setup = read_split_setup(partition);
+    splitter.emplace(setup.partitioner, setup.refiner, setup.skip_small_islands);
+  } catch (const std::invalid_argument& error) {
+    list.add(false, subject, counted + "; cannot be split again: " + error.what());
     return;
   }
-  const Splitter splitter(partition.partitioner, partition.refiner, partition.options);
-  const std::vector<int> again = splitter.run(problem).parts.part_of_body;
+  const std::vector<int> again = splitter->run(problem).parts.part_of_body;
   const int moved = static_cast<int>(std::inner_product(
       again.begin(), again.end(), partition.part_of_body.begin(), 0, std::plus<>(), std::not_equal_to<>()));
   list.add(
@@ -87,12 +87,26 @@ void check_partition(const std::string& label, const StepProblem& problem, const
   if (check_part_ids(partition, subject, list)) check_split(problem, partition, subject, list);
 }
 
+void check_friction_model(const std::string& model, const std::string& subject, CheckList& list) {
+  std::string error;
+  try {
+    read_named("friction", model, {{"friction-force-n", "0"}});
+  } catch (const std::invalid_argument& wrong) {
+    error = std::string("; ") + wrong.what();
+  }
+  list.add(error.empty(), subject, "friction_model " + model + error);
+}
+
 }  // namespace
 
 void CheckList::add(bool passed, const std::string& subject, const std::string& text) {
   ++checks_;
   failures_ += passed ? 0 : 1;
   std::printf("%s  %s: %s\n", passed ? "ok  " : "FAIL", subject.c_str(), text.c_str());
+}
+
+void CheckList::note(const std::string& subject, const std::string& text) {
+  std::fprintf(stderr, "%s: %s\n", subject.c_str(), text.c_str());
 }
 
 bool same_residual(double stored_m_per_s, double found_m_per_s) {
@@ -111,10 +125,11 @@ int find_bad_part_id(const std::vector<int>& part_of_body) {
 
 void check_problem_file(const std::filesystem::path& path, const ProblemFile& file, CheckList& list) {
   const StepProblem& problem = file.problem;
-  list.add(true, path.string(),
-           "problem of " + file.scene + " step " + std::to_string(file.step) + ": " +
-               std::to_string(problem.body_count()) + " bodies, " + std::to_string(problem.row_count()) +
-               " rows, hash " + hex(problem_hash(problem)));
+  CheckList::note(path.string(), "problem of " + file.scene + " step " + std::to_string(file.step) + ": " +
+                                     std::to_string(problem.body_count()) + " bodies, " +
+                                     std::to_string(problem.row_count()) + " rows, hash " +
+                                     hex(problem_hash(problem)));
+  check_friction_model(file.friction_model, path.string(), list);
   for (const auto& [label, solution] : file.solutions) {
     const std::string subject = path.string() + " solution/" + label;
     check_solution_label(label, solution, subject, list);

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/problem_file.h"
+#include "harness/files/problem_file.h"
 
 namespace cleave {
 
@@ -13,6 +13,8 @@ namespace cleave {
 class CheckList {
  public:
   void add(bool passed, const std::string& subject, const std::string& text);
+  // What is read and cannot be wrong: told on stderr, not counted.
+  static void note(const std::string& subject, const std::string& text);
   int checks() const { return checks_; }
   int failures() const { return failures_; }
 
@@ -27,9 +29,9 @@ bool same_residual(double stored_m_per_s, double found_m_per_s);
 // Index of the first id outside [0, n), or -1.
 int find_bad_part_id(const std::vector<int>& part_of_body);
 
-// Of every solution: its label, its residual judged anew against the stored one, its velocity against
-// v0 + M^-1 J^T impulse. Of every partition: its label, its part ids, and the same parts when the stored
-// partitioner and refiner split the problem again with the stored options.
+// Of the file: its friction model. Of every solution: its label, its residual judged anew against the stored
+// one, its velocity against v0 + M^-1 J^T impulse. Of every partition: its label, its part ids, and the same
+// parts when the stored partitioner and refiner split the problem again with the stored options.
 void check_problem_file(const std::filesystem::path& path, const ProblemFile& file, CheckList& list);
 
 }  // namespace cleave

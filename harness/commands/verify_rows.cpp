@@ -5,12 +5,13 @@
 #include <optional>
 #include <vector>
 
+#include "harness/base/hash.h"
 #include "harness/commands/verify_table.h"
-#include "harness/friction.h"
-#include "harness/hash.h"
-#include "harness/problem_graph.h"
-#include "harness/step_columns.h"
-#include "harness/step_record.h"
+#include "harness/experiment/friction.h"
+#include "harness/experiment/problem_graph.h"
+#include "harness/experiment/step_columns.h"
+#include "harness/experiment/step_record.h"
+#include "solver/problem_hash.h"
 #include "solver/residual.h"
 
 namespace cleave {

@@ -3,10 +3,11 @@
 
 #include <memory>
 
+#include "harness/base/parameter.h"
 #include "solver/step_solver.h"
 
 namespace cleave {
 
-std::unique_ptr<StepSolver> make_pgs(const SolveOptions& options);
+std::unique_ptr<StepSolver> make_pgs(const SolveOptions& options, const Settings& settings);
 
 }  // namespace cleave

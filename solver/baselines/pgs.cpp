@@ -9,7 +9,7 @@ namespace {
 
 class Pgs : public StepSolver {
  public:
-  explicit Pgs(const SolveOptions& options) : options_(options), clock_(options.threads) {}
+  Pgs(int threads, int sweeps) : sweeps_(sweeps), clock_(threads) {}
   bool uses_partition() const override { return false; }
 
  private:
@@ -25,8 +25,8 @@ class Pgs : public StepSolver {
     {
       StageTimer timer(clock_, Stage::predict);
       step_.velocity(solution.impulse, solution.velocity);
-      gauss_seidel_sweeps(step_, options_.sweeps, solution.impulse, solution.velocity);
-      summary.iterations = options_.sweeps;
+      gauss_seidel_sweeps(step_, sweeps_, solution.impulse, solution.velocity);
+      summary.iterations = sweeps_;
     }
     slack_.resize(problem.row_count());
     step_.velocity(solution.impulse, solution.velocity);
@@ -39,7 +39,7 @@ class Pgs : public StepSolver {
     return summary;
   }
 
-  SolveOptions options_;
+  int sweeps_;
   StageClock clock_;
   PreparedStep step_;
   std::vector<double> slack_;
@@ -47,6 +47,8 @@ class Pgs : public StepSolver {
 
 }  // namespace
 
-std::unique_ptr<StepSolver> make_pgs(const SolveOptions& options) { return std::make_unique<Pgs>(options); }
+std::unique_ptr<StepSolver> make_pgs(const SolveOptions& options, const Settings& settings) {
+  return std::make_unique<Pgs>(options.threads, settings.integer("sweeps"));
+}
 
 }  // namespace cleave

@@ -75,7 +75,7 @@ class DenseKernel : public Kernel {
 
 }  // namespace
 
-std::unique_ptr<Kernel> make_dense_kernel() {
+std::unique_ptr<Kernel> make_dense_kernel(const Settings&) {
   fix_eigen_blocking();
   return std::make_unique<DenseKernel>();
 }

@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 
+#include "harness/base/parameter.h"
 #include "solver/parallel_tasks.h"
 #include "solver/prepared_step.h"
 
@@ -41,9 +42,9 @@ class Kernel {
   virtual double interface_mflop() const { return 0; }
 };
 
-std::unique_ptr<Kernel> make_dense_kernel();
-std::unique_ptr<Kernel> make_monolithic_kernel();
-std::unique_ptr<Kernel> make_schur_rows_kernel();
-std::unique_ptr<Kernel> make_schur_bodies_kernel();
+std::unique_ptr<Kernel> make_dense_kernel(const Settings& settings);
+std::unique_ptr<Kernel> make_monolithic_kernel(const Settings& settings);
+std::unique_ptr<Kernel> make_schur_rows_kernel(const Settings& settings);
+std::unique_ptr<Kernel> make_schur_bodies_kernel(const Settings& settings);
 
 }  // namespace cleave

@@ -61,6 +61,8 @@ class MonolithicKernel : public Kernel {
 
 }  // namespace
 
-std::unique_ptr<Kernel> make_monolithic_kernel() { return std::make_unique<MonolithicKernel>(); }
+std::unique_ptr<Kernel> make_monolithic_kernel(const Settings&) {
+  return std::make_unique<MonolithicKernel>();
+}
 
 }  // namespace cleave

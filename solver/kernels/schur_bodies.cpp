@@ -139,6 +139,8 @@ void SchurBodiesKernel::solve(std::span<const double> f_v, std::span<const doubl
 
 }  // namespace
 
-std::unique_ptr<Kernel> make_schur_bodies_kernel() { return std::make_unique<SchurBodiesKernel>(); }
+std::unique_ptr<Kernel> make_schur_bodies_kernel(const Settings&) {
+  return std::make_unique<SchurBodiesKernel>();
+}
 
 }  // namespace cleave

@@ -325,6 +325,8 @@ double SchurRowsKernel::local_mflop() const {
 
 }  // namespace
 
-std::unique_ptr<Kernel> make_schur_rows_kernel() { return std::make_unique<SchurRowsKernel>(); }
+std::unique_ptr<Kernel> make_schur_rows_kernel(const Settings&) {
+  return std::make_unique<SchurRowsKernel>();
+}
 
 }  // namespace cleave

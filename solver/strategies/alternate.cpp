@@ -109,6 +109,6 @@ class Alternate : public Strategy {
 
 }  // namespace
 
-std::unique_ptr<Strategy> make_alternate() { return std::make_unique<Alternate>(); }
+std::unique_ptr<Strategy> make_alternate(const Settings&) { return std::make_unique<Alternate>(); }
 
 }  // namespace cleave

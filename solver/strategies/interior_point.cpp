@@ -166,6 +166,6 @@ bool InteriorPoint::run(SolveState& state) {
 
 }  // namespace
 
-std::unique_ptr<Strategy> make_interior_point() { return std::make_unique<InteriorPoint>(); }
+std::unique_ptr<Strategy> make_interior_point(const Settings&) { return std::make_unique<InteriorPoint>(); }
 
 }  // namespace cleave

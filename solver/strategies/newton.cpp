@@ -143,6 +143,6 @@ class Newton : public Strategy {
 
 }  // namespace
 
-std::unique_ptr<Strategy> make_newton() { return std::make_unique<Newton>(); }
+std::unique_ptr<Strategy> make_newton(const Settings&) { return std::make_unique<Newton>(); }
 
 }  // namespace cleave

@@ -73,6 +73,6 @@ class Pivot : public Strategy {
 
 }  // namespace
 
-std::unique_ptr<Strategy> make_pivot() { return std::make_unique<Pivot>(); }
+std::unique_ptr<Strategy> make_pivot(const Settings&) { return std::make_unique<Pivot>(); }
 
 }  // namespace cleave

@@ -6,6 +6,7 @@
 
 #include <memory>
 
+#include "harness/base/parameter.h"
 #include "solver/solve_state.h"
 
 namespace cleave {
@@ -18,9 +19,9 @@ class Strategy {
   virtual bool run(SolveState& state) = 0;
 };
 
-std::unique_ptr<Strategy> make_pivot();
-std::unique_ptr<Strategy> make_newton();
-std::unique_ptr<Strategy> make_interior_point();
-std::unique_ptr<Strategy> make_alternate();
+std::unique_ptr<Strategy> make_pivot(const Settings& settings);
+std::unique_ptr<Strategy> make_newton(const Settings& settings);
+std::unique_ptr<Strategy> make_interior_point(const Settings& settings);
+std::unique_ptr<Strategy> make_alternate(const Settings& settings);
 
 }  // namespace cleave

@@ -27,8 +27,8 @@
 #include <thread>
 #include <vector>
 
-#include "harness/problem_file.h"
-#include "harness/problem_graph.h"
+#include "harness/experiment/problem_graph.h"
+#include "harness/files/problem_file.h"
 #include "partition/registry.h"
 #include "solver/kernels/kernel.h"
 #include "solver/linear/dense_cholesky.h"
@@ -135,8 +135,7 @@ void time_side_by_side(benchmark::State& state, int size) {
 struct FreeSystem {
   explicit FreeSystem(const std::filesystem::path& file) : problem(read_problem_file(file).problem) {
     step.prepare(problem);
-    const auto mindp = std::ranges::find(partitioners(), std::string_view("mindp"), &PartitionerEntry::name);
-    part_of_body = mindp->make()->run(body_graph_of(problem), {}).part_of_body;
+    part_of_body = make_partitioner("mindp")->run(body_graph_of(problem)).part_of_body;
     for (int row = 0; row < step.row_count(); ++row)
       d.push_back(1 / std::max(problem.compliance[row], 1e-12 * step.diagonal()[row]));
     kernel->analyze(step, part_of_body, tasks);
@@ -147,7 +146,7 @@ struct FreeSystem {
   std::vector<double> d;
   StageClock clock;
   ParallelTasks tasks{clock, 1};
-  std::unique_ptr<Kernel> kernel = make_schur_rows_kernel();
+  std::unique_ptr<Kernel> kernel = make_schur_rows_kernel({});
 };
 
 void time_inside(benchmark::State& state, FreeSystem& system) {

@@ -123,14 +123,10 @@ void report_cut(benchmark::State& state, const BodyGraph& graph, std::span<const
 
 void time_ours(benchmark::State& state, const BodyGraph& graph, const Partitioner& partitioner,
                const Refiner& refiner) {
-  PartitionOptions grow;
-  grow.max_bodies = kMaxBodies;
-  RefineOptions refine;
-  refine.max_bodies = kMaxBodies;
   Partition partition;
   for (auto _ : state) {
-    partition = partitioner.run(graph, grow);
-    refiner.run(graph, refine, partition);
+    partition = partitioner.run(graph);
+    refiner.run(graph, kMaxBodies, partition);
     benchmark::DoNotOptimize(partition);
   }
   report_cut(state, graph, partition.part_of_body);
@@ -171,9 +167,11 @@ void register_benchmarks(const std::vector<NamedGraph>& graphs) {
   for (const NamedGraph& named : graphs) {
     const BodyGraph& graph = named.graph;
     for (const PartitionerEntry& partitioner : partitioners()) {
+      if (!partitioner.of_paper) continue;
       for (const RefinerEntry& refiner : refiners()) {
-        add(named.name + "/" + partitioner.name + "+" + refiner.name,
-            [&](benchmark::State& state) { time_ours(state, graph, *partitioner.make(), *refiner.make()); });
+        add(named.name + "/" + partitioner.name + "+" + refiner.name, [&](benchmark::State& state) {
+          time_ours(state, graph, *make_partitioner(partitioner.name), *make_refiner(refiner.name));
+        });
       }
     }
     add(named.name + "/metis_recursive",

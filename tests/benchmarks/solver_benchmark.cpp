@@ -21,12 +21,12 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/problem_file.h"
-#include "harness/problem_graph.h"
+#include "harness/experiment/problem_graph.h"
+#include "harness/files/problem_file.h"
 #include "partition/registry.h"
 #include "solver/kernels/kernel.h"
+#include "solver/registry.h"
 #include "solver/residual.h"
-#include "solver/step_solver.h"
 #include "tests/benchmarks/cholmod_reference.h"
 
 namespace cleave {
@@ -48,10 +48,8 @@ std::vector<double> all_rows_free(const PreparedStep& step) {
   return d;
 }
 
-void time_solver(benchmark::State& state, const NamedProblem& named, const std::string& name, int sweeps) {
-  SolveOptions options;
-  options.sweeps = sweeps;
-  const auto solver = make_step_solver(name, options);
+void time_solver(benchmark::State& state, const NamedProblem& named, const std::string& text) {
+  const auto solver = make_step_solver(text);
   Solution solution;
   SolveSummary summary;
   for (auto _ : state) {
@@ -66,7 +64,7 @@ void time_solver(benchmark::State& state, const NamedProblem& named, const std::
 }
 
 void time_pgs(benchmark::State& state, const NamedProblem& named, int sweeps) {
-  time_solver(state, named, "pgs", sweeps);
+  time_solver(state, named, "pgs@sweeps=" + std::to_string(sweeps));
   state.counters["ns_per_row_sweep"] =
       benchmark::Counter(1e-9 * sweeps * named.problem.row_count(),
                          benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -116,14 +114,9 @@ void time_kernel(benchmark::State& state, const NamedProblem& named, std::unique
 
 // A few parts a thread: parts of 25 bodies leave half the work to the interface, which is factored serially.
 Partition few_large_parts(const BodyGraph& graph) {
-  PartitionOptions options;
-  options.max_bodies = std::max(1, graph.body_count() / 4);
-  const auto bfs = std::ranges::find(partitioners(), std::string_view("bfs"), &PartitionerEntry::name);
-  const auto fm = std::ranges::find(refiners(), std::string_view("fm"), &RefinerEntry::name);
-  Partition parts = bfs->make()->run(graph, options);
-  RefineOptions refine;
-  refine.max_bodies = options.max_bodies;
-  fm->make()->run(graph, refine, parts);
+  const int max_bodies = std::max(1, graph.body_count() / 4);
+  Partition parts = make_partitioner("bfs@max-bodies=" + std::to_string(max_bodies))->run(graph);
+  make_refiner("fm")->run(graph, max_bodies, parts);
   return parts;
 }
 
@@ -132,8 +125,7 @@ void register_solvers(const NamedProblem& named) {
     return benchmark::RegisterBenchmark((row + "/" + named.name).c_str(), arguments...)
         ->Unit(benchmark::kMillisecond);
   };
-  add("exact",
-      [&named](benchmark::State& state) { time_solver(state, named, "exact", SolveOptions{}.sweeps); });
+  add("exact", [&named](benchmark::State& state) { time_solver(state, named, "exact"); });
   for (int sweeps : {100, 300, 700}) {
     add("pgs:" + std::to_string(sweeps),
         [&named, sweeps](benchmark::State& state) { time_pgs(state, named, sweeps); });
@@ -144,14 +136,14 @@ void register_solvers(const NamedProblem& named) {
   }
   for (Timed timed : {Timed::factor, Timed::assemble}) {
     add(timed == Timed::factor ? "factor" : "assemble", [&named, timed](benchmark::State& state) {
-      time_kernel(state, named, make_monolithic_kernel(), {}, 1, timed);
+      time_kernel(state, named, make_monolithic_kernel({}), {}, 1, timed);
     })->UseManualTime();
   }
   for (int threads : {1, 2}) {
     add("schur_bodies:" + std::to_string(threads), [&named, threads](benchmark::State& state) {
       const BodyGraph graph = body_graph_of(named.problem);
       const Partition parts = few_large_parts(graph);
-      time_kernel(state, named, make_schur_bodies_kernel(), parts.part_of_body, threads, Timed::factor);
+      time_kernel(state, named, make_schur_bodies_kernel({}), parts.part_of_body, threads, Timed::factor);
     })->UseManualTime();
   }
 }

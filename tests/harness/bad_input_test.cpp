@@ -5,8 +5,8 @@
 #include <cmath>
 #include <fstream>
 
-#include "harness/nearest_name.h"
-#include "harness/problem_graph.h"
+#include "harness/base/names.h"
+#include "harness/experiment/problem_graph.h"
 #include "scenarios/scene.h"
 #include "tests/harness/problem_file_sample.h"
 #include "tests/harness/run_program.h"
@@ -29,23 +29,20 @@ void expect_refused(const Arguments& arguments, const Arguments& pieces, const f
   EXPECT_TRUE(fs::is_empty(directory)) << what;
 }
 
-std::string allowed_text(const SceneParameter& parameter) {
-  if (parameter.type == SceneParameter::Type::text) return "allowed: ";
-  return parameter.type == SceneParameter::Type::choice ? parameter.choices[0] : "[";
-}
-
-Arguments bad_values(const SceneParameter& parameter) {
-  switch (parameter.type) {
-    case SceneParameter::Type::integer:
-      return {std::to_string(std::llround(parameter.min) - 1),
-              std::to_string(std::llround(parameter.max) + 1), "2.5", "many"};
-    case SceneParameter::Type::number:
-    case SceneParameter::Type::number_list:
+Arguments bad_values(const Parameter& parameter) {
+  switch (parameter.kind) {
+    case Parameter::Kind::integer:
+      return {std::to_string(std::llround(parameter.range.min) - 1),
+              std::to_string(std::llround(parameter.range.max) + 1), "2.5", "many"};
+    case Parameter::Kind::number:
+    case Parameter::Kind::numbers:
       return {"-1", "nan", "inf", "heavy"};
-    case SceneParameter::Type::choice:
+    case Parameter::Kind::word:
       return {"no-such-choice"};
-    case SceneParameter::Type::text:
-      return {"no/such/file"};
+    case Parameter::Kind::flag:
+      return {"maybe"};
+    case Parameter::Kind::path:
+      return {};  // what is wrong with a file is the scene's own matter
   }
   return {};
 }
@@ -53,11 +50,13 @@ Arguments bad_values(const SceneParameter& parameter) {
 TEST(BadSceneOption, IsOneLineThatNamesOptionValueAndRange) {
   const TemporaryDirectory directory;
   for (const SceneEntry& scene : scenes())
-    for (const SceneParameter& parameter : scene.parameters)
+    for (const Parameter& parameter : scene.parameters)
       for (const std::string& value : bad_values(parameter)) {
         const std::string option = "--" + std::string(parameter.name);
+        const std::string allowed =
+            parameter.kind == Parameter::Kind::word ? parameter.words[0] : std::string("[");
         expect_refused({"run", "--scene", scene.name, option, value, "--out", directory / "out"},
-                       {option + ": ", value, allowed_text(parameter)}, directory.path());
+                       {option + ": ", value, allowed}, directory.path());
       }
 }
 

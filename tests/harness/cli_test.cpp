@@ -6,11 +6,12 @@
 #include <map>
 #include <set>
 
-#include "harness/friction.h"
-#include "harness/nearest_name.h"
-#include "harness/options.h"
-#include "harness/solver_choices.h"
-#include "harness/step_record.h"
+#include "harness/base/names.h"
+#include "harness/experiment/algorithms.h"
+#include "harness/experiment/friction.h"
+#include "harness/experiment/options.h"
+#include "harness/experiment/step_record.h"
+#include "harness/world/ode_baselines.h"
 #include "partition/registry.h"
 #include "scenarios/scene.h"
 #include "solver/registry.h"
@@ -73,12 +74,25 @@ const std::vector<BadInput> kBadInputs = {
     {{"--kernel", "schur-row"}, {"--kernel", "'schur-row'", "'schur-rows'"}},
     {{"--solver", "pgs", "--kernel", "dense"}, {"--solver", "'pgs'"}},
     {{"--friction", "boks"}, {"--friction", "'boks'", "'box'", "constant"}},
-    {{"--friction", "constant"}, {"--friction-force-n", "required"}},
-    {{"--friction-force-n", "3"}, {"--friction-force-n", "--friction constant"}},
+    {{"--friction", "constant"}, {"--friction", "constant needs friction-force-n", "--friction-force-n"}},
+    {{"--friction-force-n", "3"}, {"--friction-force-n", "friction constant", "nothing in this run"}},
     {{"--friction", "constant", "--friction-force-n", "-3"}, {"--friction-force-n", "-3", "[0, inf)"}},
-    {{"--friction", "constant", "--friction-force-n", "3", "--ode-friction", "pyramid"},
+    {{"--friction", "constant", "--friction-force-n", "3", "--ode-friction", "pyramid", "--solver",
+      "ode-step"},
      {"--ode-friction", "pyramid", "--friction constant"}},
     {{"--ode-friction", "cone"}, {"--ode-friction", "cone", "pyramid"}},
+    {{"--partitioner", "mindp@tau-mr=5"},
+     {"--partitioner", "tau-mr is a parameter of partitioner mr", "mindp has"}},
+    {{"--partitioner", "mindp@max-bodies=0"}, {"--partitioner mindp@max-bodies", "0 is not in [1, inf)"}},
+    {{"--partitioner", "mindp@max-bodies"}, {"--partitioner", "name@parameter=value"}},
+    {{"--partitioner", "mindp", "--tau-mr", "5"},
+     {"--tau-mr", "partitioner mr", "nothing in this run has it"}},
+    {{"--sweeps", "5"}, {"--sweeps", "solver pgs", "nothing in this run has it"}},
+    {{"--solver", "schur@sweeps=5"}, {"--solver", "sweeps is a parameter of solver pgs"}},
+    {{"--solver", "pgs@sweeps=x"}, {"--solver pgs@sweeps", "'x' is not a whole number"}},
+    {{"--friction", "none", "--mu", "0.5"}, {"--mu", "frictions box, box-converged", "nothing in this run"}},
+    {{"--friction", "none@mu=0.5"}, {"--friction", "mu is a parameter of"}},
+    {{"--scene", "rock_pile@links=5"}, {"--scene"}},
     {{"--mode", "lokstep"}, {"--mode", "'lokstep'", "'lockstep'", "separate"}},
     {{"--mode", "separate", "--advance", "exact"}, {"--advance", "lockstep"}},
     {{"--edge-weight", "row"}, {"--edge-weight", "'row'", "'rows'"}},
@@ -174,7 +188,9 @@ TEST(List, ShowsTheRegistries) {
   expect_listed("scenes", names_of(scenes()));
   expect_listed("partitioners", names_of(partitioners()));
   expect_listed("refiners", names_of(refiners()));
-  expect_listed("solvers", names_of(std::span<const SolverEntry>(solver_entries())));
+  std::vector<std::string> solvers = names_of(solver_table());
+  for (const AlgorithmEntry& entry : ode_baselines()) solvers.push_back(entry.name);
+  expect_listed("solvers", solvers);
   expect_listed("strategies", names_of(strategy_table()));
   expect_listed("kernels", names_of(kernel_table()));
   expect_listed("frictions", names_of(friction_models()));
@@ -188,10 +204,20 @@ TEST(Help, ShowsEveryOption) {
   EXPECT_EQ(result.exit_code, 0);
   for (const OptionSpec& spec : run_option_specs())
     EXPECT_NE(result.out.find("--" + spec.name + " "), std::string::npos) << spec.name;
+  for (const CommonParameter& common : common_parameters())
+    EXPECT_NE(result.out.find("--" + common.parameter.name + " "), std::string::npos)
+        << common.parameter.name;
+  EXPECT_NE(result.out.find("--partitioner mindp@max-bodies=25,mindp@max-bodies=50"), std::string::npos);
   for (const SceneEntry& scene : scenes())
-    for (const SceneParameter& parameter : scene.parameters)
+    for (const Parameter& parameter : scene.parameters)
       EXPECT_NE(result.out.find("--" + std::string(parameter.name) + " "), std::string::npos)
           << parameter.name;
+}
+
+std::string texts(const std::vector<Algorithm>& algorithms) {
+  std::vector<std::string> list;
+  for (const Algorithm& algorithm : algorithms) list.push_back(algorithm.text);
+  return joined(list, ",");
 }
 
 RunOptions parsed(std::map<std::string, std::string> given) {
@@ -227,19 +253,38 @@ TEST(Options, EveryGivenValueArrives) {
   EXPECT_EQ(options.extract.mu, 0.25);
   EXPECT_EQ(options.extract.h_s, 0.01);
   EXPECT_EQ(options.extract.friction, FrictionModel::box_converged);
-  EXPECT_EQ(options.partitioners, (std::vector<std::string>{"mix", "bfs"}));
-  EXPECT_EQ(options.refiners, names_of(refiners()));
-  EXPECT_EQ(options.partition.edge_weight, EdgeWeight::pairs);
-  EXPECT_EQ(options.partition.degree_scope, DegreeScope::left);
-  EXPECT_TRUE(options.partition.as_printed);
+  EXPECT_EQ(texts(options.partitioners), "mix,bfs");
+  EXPECT_EQ(texts(options.refiners), joined(names_of(refiners()), ","));
+  const Settings& mix = options.partitioners[0].settings;
+  EXPECT_EQ(mix.text("edge-weight"), "pairs");
+  EXPECT_EQ(mix.text("degree-scope"), "left");
+  EXPECT_TRUE(mix.flag("as-printed"));
+  EXPECT_EQ(mix.integer("max-bodies"), 7);
+  EXPECT_EQ(options.partitioners[1].settings.integer("max-bodies"), 7);
   EXPECT_EQ(options.seed, 18446744073709551615u);
-  EXPECT_EQ(options.scene_options.at("bodies"), "12");
-  EXPECT_EQ(options.scene_options.at("rock-shape"), "box");  // completed with the scene's default
-  const RefineOptions refine = options.refine();
-  EXPECT_EQ(refine.max_bodies, 7);
-  EXPECT_EQ(refine.max_growth, 0.5);
-  EXPECT_EQ(refine.edge_weight, EdgeWeight::pairs);
-  EXPECT_TRUE(refine.as_printed);
+  EXPECT_EQ(options.scene.settings.text("bodies"), "12");
+  EXPECT_EQ(options.scene.settings.text("rock-shape"), "box");  // completed with the scene's default
+  const Settings& fm = options.refiners.back().settings;
+  EXPECT_EQ(fm.number("max-growth"), 0.5);
+  EXPECT_EQ(fm.text("edge-weight"), "pairs");
+  EXPECT_TRUE(fm.flag("as-printed"));
+}
+
+// One setting of an algorithm beside another, each with its own values and those given for all.
+TEST(Options, SettingsOfOneAlgorithmStandSideBySide) {
+  const RunOptions options =
+      parsed({{"partitioner", "mindp@max-bodies=9,mindp,mix@max-bodies=4@edge-weight=pairs"},
+              {"refiner", "fm@edge-weight=constraints"},
+              {"solver", "pgs@sweeps=30,pgs@sweeps=10,schur"},
+              {"max-bodies", "7"},
+              {"scene", "rock_pile@bodies=3"}});
+  EXPECT_EQ(texts(options.partitioners), "mindp@max-bodies=9,mindp,mix@max-bodies=4@edge-weight=pairs");
+  EXPECT_EQ(options.partitioners[0].settings.integer("max-bodies"), 9);
+  EXPECT_EQ(options.partitioners[1].settings.integer("max-bodies"), 7);
+  EXPECT_EQ(options.partitioners[2].settings.integer("max-bodies"), 4);
+  EXPECT_EQ(options.refiners[0].settings.text("edge-weight"), "constraints");
+  EXPECT_EQ(options.solvers[0].settings.integer("sweeps"), 30);
+  EXPECT_EQ(options.scene.settings.integer("bodies"), 3);
 }
 
 // Two rows that differ in a cell differ in a column that says why.
@@ -290,15 +335,13 @@ TEST(Options, GivenValuesStandInTheRows) {
                                            "--steps",
                                            "2",
                                            "--solver",
-                                           "schur",
+                                           "schur,pgs,ode-step,ode-quickstep",
                                            "--partitioner",
                                            "mix",
                                            "--refiner",
                                            "fm",
                                            "--dt",
                                            "0.25",
-                                           "--mu",
-                                           "0.75",
                                            "--cfm",
                                            "0.125",
                                            "--erp",
@@ -340,7 +383,7 @@ TEST(Options, GivenValuesStandInTheRows) {
   const CsvTable table = read_csv(directory / "out/steps.csv");
   const std::map<std::string, std::string> expected = {
       {"dt_s", "0.25"},
-      {"mu", "0.75"},
+      {"mu", "-"},
       {"cfm", "0.125"},
       {"erp", "0.5"},
       {"gravity_m_per_s2", "1.5"},
@@ -352,19 +395,29 @@ TEST(Options, GivenValuesStandInTheRows) {
       {"degree_scope", "whole"},
       {"as_printed", "1"},
       {"skip_small_islands", "1"},
-      {"sweeps", "7"},
       {"predictor_sweeps", "9"},
       {"max_iterations", "50"},
       {"reuse_analysis", "1"},
       {"cold", "0"},
-      {"quickstep_iterations", "11"},
-      {"ode_step_max_rows", "13"},
       {"mode", "lockstep"},
       {"advance", "monolithic"},
       {"steps", "2"},
       {"scene_options", "bodies=2;mass=100;rock-shape=sphere"},
       {"schema_version", kStepsSchema}};
   for (const auto& [column, value] : expected) EXPECT_EQ(table.at(0, column), value) << column;
+  // Each row has what its own algorithms have.
+  const std::map<std::string, std::string> of_others = {{"sweeps", "-,7,-,-"},
+                                                        {"predictor_sweeps", "9,-,-,-"},
+                                                        {"max_iterations", "50,-,-,-"},
+                                                        {"quickstep_iterations", "-,-,-,11"},
+                                                        {"ode_step_max_rows", "-,-,13,-"},
+                                                        {"edge_weight", "pairs,-,-,-"}};
+  for (const auto& [column, values] : of_others)
+    EXPECT_EQ(joined(std::vector<std::string>{table.at(0, column), table.at(1, column), table.at(2, column),
+                                              table.at(3, column)},
+                     ","),
+              values)
+        << column;
 }
 
 TEST(Options, FrictionWordsFollowTheEnumeration) {
@@ -383,12 +436,15 @@ TEST(Options, StiffnessAndDampingBecomeErpAndCfm) {
 }
 
 TEST(Options, StrategyAndKernelReplaceHalvesOfSolverNames) {
-  EXPECT_EQ(parsed({{"solver", "schur"}, {"strategy", "interior-point"}}).solvers,
-            std::vector<std::string>{"interior-point:schur-rows"});
-  EXPECT_EQ(parsed({{"solver", "schur"}, {"kernel", "monolithic"}}).solvers,
-            std::vector<std::string>{"pivot:monolithic"});
-  EXPECT_EQ(parsed({{"solver", "interior-point:dense"}, {"kernel", "monolithic"}}).solvers,
-            std::vector<std::string>{"interior-point:monolithic"});
+  const auto solvers = [](const std::map<std::string, std::string>& given) {
+    return texts(parsed(given).solvers);
+  };
+  EXPECT_EQ(solvers({{"solver", "schur"}, {"strategy", "interior-point"}}), "interior-point:schur-rows");
+  EXPECT_EQ(solvers({{"solver", "schur"}, {"kernel", "monolithic"}}), "pivot:monolithic");
+  EXPECT_EQ(solvers({{"solver", "interior-point:dense"}, {"kernel", "monolithic"}}),
+            "interior-point:monolithic");
+  EXPECT_EQ(solvers({{"solver", "schur@max-iterations=9"}, {"kernel", "schur-bodies"}}),
+            "pivot:schur-bodies@max-iterations=9");
   EXPECT_THROW(parsed({{"solver", "schur,monolithic"}, {"kernel", "dense"}}),
                std::invalid_argument);  // the same twice
 }

@@ -1,5 +1,5 @@
 // Matching on made-up contact lists, and what is remembered.
-#include "harness/contact_memory.h"
+#include "harness/world/contact_memory.h"
 
 #include <gtest/gtest.h>
 

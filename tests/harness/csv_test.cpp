@@ -7,8 +7,8 @@
 #include <set>
 #include <stdexcept>
 
-#include "harness/csv_recorder.h"
-#include "harness/step_record.h"
+#include "harness/experiment/step_record.h"
+#include "harness/files/csv_recorder.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -150,28 +150,28 @@ TEST(Csv, StageTimesAndRestAddUpToTheTotal) {
 
 TEST(CsvRecorder, WritesEachStepAtOnce) {
   const TemporaryDirectory directory;
-  CsvRecorder recorder(directory / "steps.csv");
+  CsvRecorder recorder(directory / "steps.csv", csv_header());
   EXPECT_EQ(read_text(directory / "steps.csv"), csv_header());
   std::vector<StepRecord> rows(3);
   for (int step = 0; step < 4; ++step) {
     for (StepRecord& row : rows) row.step = step;
-    recorder.write(rows);
+    recorder.append(csv_lines(rows));
     const CsvTable table = read_csv(directory / "steps.csv");  // while the recorder is still open
     ASSERT_EQ(table.rows.size(), 3u * (step + 1));
     EXPECT_EQ(table.at(table.rows.size() - 1, "step"), std::to_string(step));
   }
-  recorder.write({});
+  recorder.append("");
   EXPECT_EQ(count_lines(read_text(directory / "steps.csv")), 13);
 }
 
 TEST(CsvRecorder, NamesTheFileItCannotWrite) {
   try {
-    CsvRecorder recorder("/nowhere/at/all/steps.csv");
+    CsvRecorder recorder("/nowhere/at/all/steps.csv", csv_header());
     FAIL() << "no error";
   } catch (const std::runtime_error& error) {
     EXPECT_NE(std::string(error.what()).find("/nowhere/at/all/steps.csv"), std::string::npos);
   }
-  EXPECT_THROW(CsvRecorder("/dev/full"), std::runtime_error);
+  EXPECT_THROW(CsvRecorder("/dev/full", csv_header()), std::runtime_error);
 }
 
 }  // namespace

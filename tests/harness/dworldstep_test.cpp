@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "harness/extract.h"
+#include "harness/world/extract.h"
 #include "tests/harness/dense_oracle.h"
 #include "tests/harness/extract_test_scene.h"
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "harness/body_terms.h"
+#include "harness/world/body_terms.h"
 #include "tests/harness/extract_test_scene.h"
 
 namespace cleave {

@@ -1,7 +1,7 @@
 // The body graph made from a problem's arrays alone.
 #include <gtest/gtest.h>
 
-#include "harness/problem_graph.h"
+#include "harness/experiment/problem_graph.h"
 
 namespace cleave {
 namespace {

@@ -1,5 +1,5 @@
 // Contact rows, row order, options and warm impulses of extract().
-#include "harness/extract.h"
+#include "harness/world/extract.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <random>
 #include <utility>
 
-#include "harness/ode_world.h"
+#include "harness/world/ode_world.h"
 #include "scenarios/scene.h"
 
 namespace cleave {
@@ -38,7 +38,7 @@ inline SceneBuilder& pending_builder() {
 
 class ExtractTestScene : public Scene {
  public:
-  SceneContent build(dWorldID world, dSpaceID space, const SceneSettings&, std::uint64_t) override {
+  SceneContent build(dWorldID world, dSpaceID space, const Settings&, std::uint64_t) override {
     SceneContent content;
     pending_builder()(world, space, content);
     return content;
@@ -48,9 +48,9 @@ class ExtractTestScene : public Scene {
 inline std::unique_ptr<OdeWorld> make_test_world(SceneBuilder builder, double gravity_m_per_s2,
                                                  bool gyroscopic) {
   pending_builder() = std::move(builder);
-  const SceneEntry entry{
-      "test", "", "", {}, [] { return std::unique_ptr<Scene>(std::make_unique<ExtractTestScene>()); }};
-  return std::make_unique<OdeWorld>(entry, SceneSettings({}), 1, gravity_m_per_s2, gyroscopic);
+  const SceneEntry entry{{"test", "", ""},
+                         [] { return std::unique_ptr<Scene>(std::make_unique<ExtractTestScene>()); }};
+  return std::make_unique<OdeWorld>(entry, Settings(), 1, gravity_m_per_s2, gyroscopic);
 }
 
 inline void set_random_orientation(dBodyID body, TestRandom& random) {

@@ -24,7 +24,7 @@ CsvTable rows_of(const Arguments& scene, const std::string& steps) {
   return read_csv(directory / "out/steps.csv");
 }
 
-Arguments file(const std::string& name) { return {"--scene", "file", "--path", shipped_file(name)}; }
+Arguments file(const std::string& name) { return {"--scene", "file@path=" + shipped_file(name)}; }
 
 void expect_same(const std::string& scene, const std::string& steps) {
   const CsvTable written = rows_of(file(scene), steps), compiled = rows_of({"--scene", scene}, steps);
@@ -65,17 +65,38 @@ TEST(FileSceneRun, ABadFileIsOneLineBeforeAnythingIsCreated) {
   const TemporaryDirectory files;
   const std::string path = files / "bad.toml";
   std::ofstream(path) << "[[body]]\nshape = 'sphere'\nradius_m = -1\n";
-  expect_refused({"--scene", "file", "--path", path},
+  expect_refused({"--scene", "file@path=" + path},
                  path + ":3: body[0].radius_m: -1 is not in [1e-06, 1e+06]");
 }
 
 TEST(FileSceneRun, WithoutAPathIsOneLine) {
-  expect_refused({"--scene", "file"}, "--path: is required by scene 'file'");
+  expect_refused({"--scene", "file"}, "--scene: file needs path: write file@path=FILE");
 }
 
 TEST(FileSceneRun, APathForAnotherSceneIsOneLine) {
-  expect_refused({"--scene", "rock_pile", "--path", shipped_file("pile")},
-                 "--path: scene 'rock_pile' has no such option (it has: --bodies, --rock-shape, --mass)");
+  expect_refused({"--scene", "rock_pile@path=" + shipped_file("pile")}, "path is a parameter of scene file");
+}
+
+TEST(FileSceneRun, AFileThatIsNotThereIsOneLine) {
+  expect_refused({"--scene", "file@path=no/such.toml"}, "--scene file@path: 'no/such.toml' cannot be read");
+}
+
+// A run is known by what the file says, not by where it lies.
+TEST(FileSceneRun, IdentityIsTheContentNotThePath) {
+  const TemporaryDirectory files;
+  const std::string text = read_text(shipped_file("pile"));
+  std::ofstream(files / "same.toml") << text;
+  std::ofstream(files / "other.toml") << text << "# one more line\n";
+  const auto names = [](const std::string& path) {
+    const CsvTable rows = rows_of({"--scene", "file@path=" + path}, "1");
+    EXPECT_EQ(rows.at(0, "scene_options").find("toml"), std::string::npos);
+    return std::pair(rows.at(0, "run_id"), rows.at(0, "scene"));
+  };
+  const auto shipped = names(shipped_file("pile"));
+  EXPECT_EQ(names(files / "same.toml"), shipped);
+  EXPECT_NE(names(files / "other.toml").first, shipped.first);
+  EXPECT_NE(names(files / "other.toml").second, shipped.second);
+  EXPECT_TRUE(shipped.second.starts_with("file@")) << shipped.second;
 }
 
 }  // namespace

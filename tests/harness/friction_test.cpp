@@ -1,5 +1,5 @@
 // Predicted bounds against a dense twin, the mismatch, and the outer fixed point.
-#include "harness/friction.h"
+#include "harness/experiment/friction.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <set>
 
-#include "harness/problem_file.h"
+#include "harness/files/problem_file.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {

@@ -1,7 +1,7 @@
 // The gap of a joint, whatever its kind, its own parameters and the side of the world.
 #include <gtest/gtest.h>
 
-#include "harness/joint_rows.h"
+#include "harness/world/joint_rows.h"
 #include "tests/harness/ode_test_world.h"
 
 namespace cleave {

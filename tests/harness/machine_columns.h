@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string>
 
-#include "harness/step_record.h"
+#include "harness/experiment/step_record.h"
 
 namespace cleave {
 

@@ -1,5 +1,5 @@
 // manifest.json: valid JSON that a foreign parser reads, with everything needed to repeat the run.
-#include "harness/manifest.h"
+#include "harness/files/manifest.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,10 @@
 #include <fstream>
 #include <limits>
 
-#include "harness/json_writer.h"
-#include "harness/nearest_name.h"
-#include "harness/step_record.h"
+#include "harness/base/names.h"
+#include "harness/experiment/options.h"
+#include "harness/experiment/step_record.h"
+#include "harness/files/json_writer.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -100,6 +101,7 @@ TEST_F(ManifestOfARun, SaysWhatTheTimesDependOn) {
 TEST_F(ManifestOfARun, HoldsEveryOptionWithItsValue) {
   std::vector<std::string> names;
   for (const OptionSpec& spec : run_option_specs()) names.push_back(spec.name);
+  for (const CommonParameter& common : common_parameters()) names.push_back(common.parameter.name);
   EXPECT_EQ(ask_manifest("[n for n in '" + joined(names, ",") + "'.split(',') if n not in m['options']]"),
             "[]");
   EXPECT_EQ(ask_manifest("m['options']['mu'], m['options']['stiffness'], m['options']['as-printed']"),

@@ -1,5 +1,5 @@
 // motion.h5: that it holds what was simulated, changes nothing else, and can be read whatever ends the run.
-#include "harness/motion_recorder.h"
+#include "harness/commands/motion_recorder.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -13,11 +13,11 @@
 #include <set>
 #include <thread>
 
-#include "harness/body_marks.h"
-#include "harness/csv_recorder.h"
-#include "harness/hdf5_reader.h"
-#include "harness/hdf5_writer.h"
-#include "harness/simulation.h"
+#include "harness/experiment/body_marks.h"
+#include "harness/experiment/simulation.h"
+#include "harness/files/csv_recorder.h"
+#include "harness/files/hdf5_reader.h"
+#include "harness/files/hdf5_writer.h"
 #include "solver/residual.h"
 #include "tests/harness/machine_columns.h"
 #include "tests/harness/run_program.h"
@@ -48,16 +48,19 @@ struct Recorded {
 void simulate_and_record(const RunOptions& options, Recorded& recorded) {
   const std::atomic<bool> stop = false;
   MotionRecorder motion(recorded.path(), options);
-  const auto watch = [&](const OdeWorld& world, const StepProblem& problem, int step,
-                         std::span<const StepRecord> rows, std::span<const Outcome> outcomes) {
-    motion.record(world, problem, step, rows, outcomes);
-    Seen seen{step, {}, problem, {rows.begin(), rows.end()}, {outcomes.begin(), outcomes.end()}};
+  const auto observe = [&](const ObservedStep& step) {
+    motion.record(step);
+    const OdeWorld& world = *step.context.world;
+    Seen seen{step.step,
+              {},
+              step.problem,
+              {step.rows.begin(), step.rows.end()},
+              {step.outcomes.begin(), step.outcomes.end()}};
     for (int i = 0; i < world.body_count(); ++i) seen.states.push_back(world.state(i));
     recorded.seen.push_back(seen);
   };
-  Simulation simulation(options, stop, {}, watch);
-  CsvRecorder csv(recorded.directory / "steps.csv");
-  simulation.run(csv, [](int, int) {});
+  Simulation simulation(options, stop, observe);
+  simulation.run([](std::span<const StepRecord>) {}, [](int, int) {});
   motion.finish();
 }
 

@@ -1,4 +1,4 @@
-#include "harness/nearest_name.h"
+#include "harness/base/names.h"
 
 #include <gtest/gtest.h>
 

@@ -1,13 +1,14 @@
 // ODE's own solvers as baselines: the rebuilt world poses the same problem, row for row, and its forces come
 // back as the impulses of the right rows with the right signs.
-#include "harness/ode_baselines.h"
+#include "harness/world/ode_baselines.h"
+#include "harness/experiment/algorithms.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "harness/contact_memory.h"
-#include "harness/friction.h"
+#include "harness/experiment/friction.h"
+#include "harness/world/contact_memory.h"
 #include "scenarios/scene_random.h"
 #include "solver/residual.h"
 #include "tests/harness/dense_oracle.h"
@@ -42,13 +43,14 @@ Step take_step(OdeWorld& world, const ExtractOptions& options,
   return step;
 }
 
-Solved solve_with_ode(const std::string& name, const Step& step, const OdeBaselineOptions& options = {}) {
-  const std::unique_ptr<OdeBaseline> baseline = make_ode_baseline(name, options);
-  baseline->see(step.world, step.contacts, step.options.erp, step.options.cfm);
+// text: as for --solver, with parameters.
+Solved solve_with_ode(const std::string& text, const Step& step) {
+  const StepContext context{&step.world, step.contacts, step.options.erp, step.options.cfm};
+  const std::unique_ptr<StepSolver> baseline = make_ode_baseline(read_named("solver", text), context);
   Solved solved;
   solved.solution.impulse = step.problem.warm_impulse;
   solved.summary = baseline->solve(step.problem, {}, solved.solution);
-  solved.messages = baseline->messages();
+  solved.messages = solved.summary.engine_messages;
   solved.verdict = judge(step.problem, solved.solution.impulse);
   return solved;
 }
@@ -214,7 +216,7 @@ TEST(OdeStep, ReadsTheRowsOfEveryJointKindWithTheirSigns) {
         const Solved solved = solve_with_ode("ode-step", step);
         EXPECT_LE(solved.verdict.residual_m_per_s, 1e-9) << which;
         EXPECT_LE(largest_gap(solved.solution.impulse, impulse), 1e-9 * size) << which;
-        const Solved quick = solve_with_ode("ode-quickstep", step, {20000, 0});
+        const Solved quick = solve_with_ode("ode-quickstep@quickstep-iterations=20000", step);
         EXPECT_LE(quick.verdict.residual_m_per_s, 1e-9) << which;
         EXPECT_LE(largest_gap(quick.solution.impulse, impulse), 1e-8 * size) << which;
       }
@@ -232,7 +234,8 @@ TEST(OdeQuickStep, ComesCloserWithEveryTenfoldOfIterations) {
   ASSERT_GT(step.problem.row_count(), 60);
   double last = 1e9;
   for (const int iterations : {2, 20, 200, 2000, 20000}) {
-    const Solved solved = solve_with_ode("ode-quickstep", step, {iterations, 0});
+    const Solved solved =
+        solve_with_ode("ode-quickstep@quickstep-iterations=" + std::to_string(iterations), step);
     EXPECT_EQ(solved.summary.iterations, iterations);
     EXPECT_TRUE(solved.verdict.residual_m_per_s < last / 2 || solved.verdict.exact)
         << iterations << " iterations: " << solved.verdict.residual_m_per_s << " after " << last;
@@ -288,16 +291,15 @@ TEST(OdeBaselines, FrictionIsTheProblemsOrOdesOwn) {
   for (int r = 0; r < step.problem.row_count(); ++r)
     if (step.problem.row_kind[r] == RowKind::friction) step.problem.lower[r] = step.problem.upper[r] = 0;
   const double angle_rad = std::acos(-1.0) / 12;
-  const auto speed = [&](const char* solver, OdeFriction friction) {
-    OdeBaselineOptions options{.quickstep_iterations = 3000};
-    options.friction = friction;
-    const std::vector<double> v = solve_with_ode(solver, step, options).solution.velocity;
+  const auto speed = [&](const std::string& solver, const std::string& friction) {
+    const std::vector<double> v =
+        solve_with_ode(solver + "@ode-friction=" + friction, step).solution.velocity;
     return v[0] * std::cos(angle_rad) - v[2] * std::sin(angle_rad);
   };
   const double pull = 9.81 * std::sin(angle_rad), hold = 0.2 * 9.81 * std::cos(angle_rad);
-  for (const char* solver : {"ode-step", "ode-quickstep"}) {
-    EXPECT_NEAR(speed(solver, OdeFriction::limits), pull * kStep_s, 1e-4) << solver;
-    EXPECT_NEAR(speed(solver, OdeFriction::pyramid), (pull - hold) * kStep_s, 1e-4) << solver;
+  for (const char* solver : {"ode-step", "ode-quickstep@quickstep-iterations=3000"}) {
+    EXPECT_NEAR(speed(solver, "limits"), pull * kStep_s, 1e-4) << solver;
+    EXPECT_NEAR(speed(solver, "pyramid"), (pull - hold) * kStep_s, 1e-4) << solver;
   }
 }
 
@@ -305,15 +307,18 @@ TEST(OdeBaselines, RefuseWithAReason) {
   const auto world = make_joined(kJoints[1], false, 1);
   const Step step = take_step(*world, {});
   const int rows = step.problem.row_count();
-  EXPECT_EQ(solve_with_ode("ode-step", step, {20, rows}).summary.status, SolveStatus::ok);
-  const Solved refused = solve_with_ode("ode-step", step, {20, rows - 1});
+  EXPECT_EQ(solve_with_ode("ode-step@ode-step-max-rows=" + std::to_string(rows), step).summary.status,
+            SolveStatus::ok);
+  const Solved refused = solve_with_ode("ode-step@ode-step-max-rows=" + std::to_string(rows - 1), step);
   EXPECT_EQ(refused.summary.status, SolveStatus::refused);
   EXPECT_NE(refused.summary.message.find(std::to_string(rows) + " rows"), std::string::npos);
-  EXPECT_NE(refused.summary.message.find("--ode-step-max-rows"), std::string::npos);
+  EXPECT_NE(refused.summary.message.find("ode-step-max-rows"), std::string::npos);
   Solution solution;
-  const SolveSummary blind = make_ode_baseline("ode-quickstep", {})->solve(step.problem, {}, solution);
+  const StepContext nothing;
+  const SolveSummary blind =
+      make_ode_baseline(read_named("solver", "ode-quickstep"), nothing)->solve(step.problem, {}, solution);
   EXPECT_EQ(blind.status, SolveStatus::refused);
-  EXPECT_EQ(make_ode_baseline("exact", {}), nullptr);
+  EXPECT_EQ(make_ode_baseline(read_named("solver", "exact"), nothing), nullptr);
 }
 
 // Rigid contact of a box with copies of its shape: redundant rows without compliance.
@@ -369,12 +374,11 @@ TEST(OdeBaselines, AreOrdinarySolversOfARun) {
 
 // The bounds of a step are then found by solving it, with its own contacts.
 TEST(OdeBaselines, MayConvergeTheBoundsOfAStep) {
-  for (const std::string solver : {"ode-step", "ode-quickstep"}) {
+  for (const std::string solver : {"ode-step", "ode-quickstep@quickstep-iterations=3000"}) {
     const TemporaryDirectory directory;
     const ProgramResult result =
         run_cleave({"run", "--scene", "ladder_incline", "--mu", "0.2", "--steps", "20", "--solver", solver,
-                    "--advance", solver, "--friction", "box-converged", "--quickstep-iterations", "3000",
-                    "--out", directory / "out"});
+                    "--advance", solver, "--friction", "box-converged", "--out", directory / "out"});
     const CsvTable table = read_csv(directory / "out/steps.csv");
     ASSERT_EQ(table.rows.size(), 20u) << solver << ": " << result.err;
     for (std::size_t r = 0; r < table.rows.size(); ++r)

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "harness/ode_world.h"
+#include "harness/world/ode_world.h"
 #include "scenarios/shapes.h"
 
 namespace cleave {
@@ -18,7 +18,7 @@ inline Build current_build;
 
 class BuiltScene : public Scene {
  public:
-  SceneContent build(dWorldID world, dSpaceID space, const SceneSettings&, std::uint64_t) override {
+  SceneContent build(dWorldID world, dSpaceID space, const Settings&, std::uint64_t) override {
     SceneContent content;
     current_build(world, space, content);
     return content;

@@ -1,4 +1,4 @@
-#include "harness/ode_world.h"
+#include "harness/world/ode_world.h"
 
 #include <gtest/gtest.h>
 
@@ -91,12 +91,12 @@ TEST(State, HashIsFnv1aOfThirteenNumbersABody) {
 
 TEST(State, SameSeedSameHash) {
   for (const ShippedScene& scene : shipped_scenes()) {
-    const SceneSettings settings = make_scene_settings(*scene.entry, scene.given);
-    const auto world = [&](std::uint64_t seed) {
+    const Settings settings = make_scene_settings(*scene.entry, scene.given);
+    const auto hash = [&](std::uint64_t seed) {
       return OdeWorld(*scene.entry, settings, seed, 9.81).state_hash();
     };
-    EXPECT_EQ(world(3), world(3)) << scene.name;
-    EXPECT_EQ(world(3) != world(4), scene.draws) << scene.name;
+    EXPECT_EQ(hash(3), hash(3)) << scene.name;
+    EXPECT_EQ(hash(3) != hash(4), scene.draws) << scene.name;
   }
 }
 

@@ -1,5 +1,5 @@
 // The condition number of a part against its definition, written out dense over all bodies.
-#include "harness/part_condition.h"
+#include "harness/experiment/part_condition.h"
 
 #include <gtest/gtest.h>
 

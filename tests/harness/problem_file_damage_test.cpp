@@ -79,9 +79,6 @@ std::vector<Damage> damaged_values() {
       {"negative_step", {"step = -1", ">= 0"}, [](ProblemFile& f) { f.step = -1; }},
       {"nan_erp", {"erp = nan"}, [](ProblemFile& f) { f.erp = std::nan(""); }},
       {"negative_cfm", {"cfm = -1"}, [](ProblemFile& f) { f.cfm = -1; }},
-      {"unknown_friction",
-       {"friction_model = \"boxy\"", "box-converged"},
-       [](ProblemFile& f) { f.friction_model = "boxy"; }},
       {"shape_of_no_body",
        {"shape/geom_body[2] = 5", "-1 (static) to 4"},
        [](ProblemFile& f) { f.shapes->geom_body[2] = 5; }},
@@ -232,17 +229,6 @@ TEST(ProblemFileDamage, UndamagedSampleIsRead) {
   const TemporaryDirectory directory;
   write_unchecked(directory / "good.h5", sample_file());
   EXPECT_EQ(error_of(directory / "good.h5"), "");
-}
-
-TEST(ProblemFileDamage, PartitionOptionsKeepTheirRanges) {
-  const TemporaryDirectory directory;
-  ProblemFile file = sample_file();
-  file.partitions.begin()->second.options.partition.max_bodies = 0;
-  write_problem_file(directory / "a.h5", file);
-  const std::string error = error_of(directory / "a.h5");
-  EXPECT_NE(error.find("partition/mix+fm+schur/max_bodies: --max-bodies: 0 is not in [1, inf)"),
-            std::string::npos)
-      << error;
 }
 
 TEST(ProblemFileDamage, TruncatedAnywhere) {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "harness/hdf5_writer.h"
-#include "harness/problem_file.h"
-#include "harness/problem_file_fields.h"
+#include "harness/files/hdf5_writer.h"
+#include "harness/files/problem_file.h"
+#include "harness/files/problem_file_fields.h"
 
 namespace cleave {
 
@@ -98,11 +98,11 @@ inline ProblemFile sample_file(int bodies = 5, std::uint64_t seed = 1) {
   solution.velocity = random.numbers(6 * bodies);
   file.solutions["mix+fm+schur"] = solution;
   StoredPartition partition{"mix", "fm", {}, std::vector<int>(bodies, 0)};
-  partition.options.partition.max_bodies = 7;
-  partition.options.partition.degree_scope = DegreeScope::left;
-  partition.options.partition.edge_weight = EdgeWeight::constraints;
-  partition.options.partition.as_printed = true;
-  partition.options.max_growth = 0.1;
+  using Kind = Parameter::Kind;
+  partition.parameters = {{"as_printed", Kind::flag, "true"},
+                          {"edge_weight", Kind::word, "constraints"},
+                          {"max_bodies", Kind::integer, "7"},
+                          {"max_growth", Kind::number, "0.1"}};
   file.partitions["mix+fm+schur"] = partition;
   return file;
 }

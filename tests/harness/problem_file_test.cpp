@@ -1,12 +1,13 @@
 // What is written to a problem file is what is read from it, to the last bit.
-#include "harness/problem_file.h"
+#include "harness/files/problem_file.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 
-#include "harness/hash.h"
+#include "harness/base/hash.h"
+#include "solver/problem_hash.h"
 #include "tests/harness/problem_file_sample.h"
 #include "tests/harness/run_program.h"
 
@@ -95,8 +96,12 @@ TEST(ProblemFile, RoundTripKeepsSolutionsAndPartitions) {
   EXPECT_EQ(a.partitioner, b.partitioner);
   EXPECT_EQ(a.refiner, b.refiner);
   EXPECT_EQ(a.part_of_body, b.part_of_body);
-  for (const OptionSpec& spec : run_option_specs())
-    EXPECT_EQ(spec.get(a.options), spec.get(b.options)) << spec.name;
+  ASSERT_EQ(a.parameters.size(), b.parameters.size());
+  for (std::size_t i = 0; i < a.parameters.size(); ++i) {
+    EXPECT_EQ(a.parameters[i].name, b.parameters[i].name);
+    EXPECT_EQ(a.parameters[i].kind, b.parameters[i].kind) << a.parameters[i].name;
+    EXPECT_EQ(a.parameters[i].text, b.parameters[i].text) << a.parameters[i].name;
+  }
 }
 
 TEST(ProblemFile, StepWithoutRowsOrBodies) {

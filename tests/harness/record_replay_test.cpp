@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <set>
 #include <thread>
 
-#include "harness/hash.h"
-#include "harness/nearest_name.h"
-#include "harness/problem_file.h"
+#include "harness/base/hash.h"
+#include "harness/base/names.h"
+#include "harness/files/problem_file.h"
+#include "solver/problem_hash.h"
 #include "solver/residual.h"
 #include "tests/harness/machine_columns.h"
 #include "tests/harness/run_program.h"
@@ -117,8 +119,9 @@ TEST(Record, RefusesOptionsThatItsSolverDoesNotUse) {
     EXPECT_EQ(taken.exit_code, 0) << taken.err;
     const ProgramResult refused = result(not_used_by, "refused", {});
     EXPECT_EQ(refused.exit_code, 1);
-    EXPECT_TRUE(refused.err.starts_with("cleave record: " + option + ": --advance " + not_used_by))
-        << refused.err;
+    EXPECT_TRUE(refused.err.starts_with("cleave record: " + option + ": ")) << refused.err;
+    const bool is_owned = refused.err.find("is a parameter of") != std::string::npos;
+    EXPECT_TRUE(is_owned || refused.err.find("--advance " + not_used_by) != std::string::npos) << refused.err;
     EXPECT_EQ(count_lines(refused.err), 1);
     EXPECT_FALSE(fs::exists(directory / "refused"));
   }
@@ -297,7 +300,12 @@ TEST_F(ReplayOfARun, PartitionsRememberTheirOptions) {
   const StoredPartition& partition = file.partitions.at("mix+fm+schur");
   EXPECT_EQ(partition.partitioner, "mix");
   EXPECT_EQ(partition.refiner, "fm");
-  EXPECT_EQ(partition.options.partition.max_bodies, 5);
+  std::map<std::string, std::string> stored;
+  for (const StoredParameter& parameter : partition.parameters) stored[parameter.name] = parameter.text;
+  EXPECT_EQ(stored.at("max_bodies"), "5");
+  EXPECT_EQ(stored.at("tau_mix"), "0.5");
+  EXPECT_EQ(stored.at("max_growth"), "0.2");
+  EXPECT_EQ(stored.at("skip_small_islands"), "false");
 }
 
 // --cold is what a file with zeros for its warm start would give, and the row still names the file's problem.

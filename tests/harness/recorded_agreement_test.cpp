@@ -6,9 +6,10 @@
 #include <cmath>
 #include <map>
 
-#include "harness/problem_file.h"
-#include "harness/problem_graph.h"
-#include "harness/splitter.h"
+#include "harness/experiment/algorithms.h"
+#include "harness/experiment/problem_graph.h"
+#include "harness/experiment/splitter.h"
+#include "harness/files/problem_file.h"
 #include "partition/registry.h"
 #include "solver/registry.h"
 #include "solver/residual.h"
@@ -80,13 +81,13 @@ struct NamedParts {
 // Every partitioner with every one of the refiners, and every body for itself.
 std::vector<NamedParts> partitions_of(const StepProblem& problem, int max_bodies,
                                       const std::vector<std::string>& refiners) {
-  RunOptions options;
-  options.partition.max_bodies = max_bodies;
+  const CommonValues common = {{"max-bodies", std::to_string(max_bodies)}};
   std::vector<NamedParts> all;
-  for (const PartitionerEntry& partitioner : partitioners())
+  for (const Algorithm& partitioner : read_list("partitioner", "all", common))
     for (const std::string& refiner : refiners)
-      all.push_back({partitioner.name + ("+" + refiner),
-                     Splitter(partitioner.name, refiner, options).run(problem).parts.part_of_body});
+      all.push_back(
+          {partitioner.name + "+" + refiner,
+           Splitter(partitioner, read_named("refiner", refiner), false).run(problem).parts.part_of_body});
   std::vector<int> own(problem.body_count());
   for (std::size_t body = 0; body < own.size(); ++body) own[body] = static_cast<int>(body);
   all.push_back({"own", own});
@@ -97,12 +98,12 @@ std::vector<NamedParts> partitions_of(const StepProblem& problem, int max_bodies
 std::vector<std::string> solvers_that_never_miss() {
   std::vector<std::string> names;
   for (const SolverRow& row : solver_table())
-    if (row.strategy != nullptr) names.emplace_back(row.entry.name);
+    if (row.strategy != nullptr) names.emplace_back(row.name);
   for (const StrategyRow& strategy : strategy_table()) {
-    const std::string name = strategy.entry.name;
+    const std::string name = strategy.name;
     if (name == "alternate" || name == "newton") continue;
     for (const KernelRow& kernel : kernel_table())
-      if (runs_on(strategy, kernel)) names.push_back(name + ":" + kernel.entry.name);
+      if (runs_on(strategy, kernel)) names.push_back(name + ":" + kernel.name);
   }
   return names;
 }

@@ -3,7 +3,7 @@
 
 #include <regex>
 
-#include "harness/build_info.h"
+#include "harness/files/build_info.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {

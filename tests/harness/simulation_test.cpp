@@ -1,6 +1,6 @@
 // Whole runs of the program on small scenes: every row exact, the same again, whatever the threads, and
 // complete lines whatever ends the run.
-#include "harness/simulation.h"
+#include "harness/experiment/simulation.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -9,9 +9,9 @@
 #include <cstdlib>
 #include <thread>
 
-#include "harness/nearest_name.h"
-#include "harness/run_summary.h"
-#include "harness/splitter.h"
+#include "harness/base/names.h"
+#include "harness/experiment/run_summary.h"
+#include "harness/experiment/splitter.h"
 #include "partition/registry.h"
 #include "tests/harness/machine_columns.h"
 #include "tests/harness/run_program.h"
@@ -315,16 +315,22 @@ TEST(Interrupt, KilledRunLeavesCompleteLines) {
   EXPECT_NE(read_text(directory / "out/manifest.json").find("\"state\": \"running\""), std::string::npos);
 }
 
+// All that know what a small island is.
+std::vector<Algorithm> with_max_bodies(int max_bodies) {
+  std::vector<Algorithm> list = read_list("partitioner", "all", {{"max-bodies", std::to_string(max_bodies)}});
+  std::erase_if(list, [](const Algorithm& algorithm) { return !algorithm.settings.has("max-bodies"); });
+  EXPECT_GE(list.size(), 5u);
+  return list;
+}
+
 // Islands {0, 2} and {1, 3, 4, 5, 6} and the single body 7, with at most three bodies a part.
 TEST(SmallIslands, BecomeOnePartEachAfterTheLargeOnes) {
   const std::vector<double> mass_kg = {1, 1, 1000, 1, 1, 1, 1, 1};  // mr alone would split {0, 2}
   const std::vector<ConstraintLink> links = {{0, 2, 3}, {0, 2, 1}, {1, 3, 3},
                                              {3, 4, 3}, {4, 5, 3}, {5, 6, 3}};
   const BodyGraph graph(mass_kg, links);
-  PartitionOptions options;
-  options.max_bodies = 3;
-  for (const PartitionerEntry& entry : partitioners()) {
-    const Partition partition = partition_large_islands(graph, *entry.make(), options);
+  for (const Algorithm& entry : with_max_bodies(3)) {
+    const Partition partition = partition_large_islands(graph, *make_partitioner(entry), 3);
     const std::vector<int>& part = partition.part_of_body;
     const PartitionMetrics metrics = measure_partition(graph, part);
     SCOPED_TRACE(entry.name);
@@ -348,12 +354,10 @@ TEST(SmallIslands, LargeGraphIsPartitionedAsBefore) {
         links.push_back({body, other, 1 + (body + k) % 3});
   }
   const BodyGraph graph(mass_kg, links);
-  PartitionOptions options;
-  options.max_bodies = 5;
-  for (const PartitionerEntry& entry : partitioners()) {
-    const auto partitioner = entry.make();
-    EXPECT_EQ(partition_large_islands(graph, *partitioner, options).part_of_body,
-              partitioner->run(graph, options).part_of_body)
+  for (const Algorithm& entry : with_max_bodies(5)) {
+    const auto partitioner = make_partitioner(entry);
+    EXPECT_EQ(partition_large_islands(graph, *partitioner, 5).part_of_body,
+              partitioner->run(graph).part_of_body)
         << entry.name;
   }
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "harness/nearest_name.h"
+#include "harness/base/names.h"
 #include "solver/registry.h"
 #include "tests/harness/machine_columns.h"
 #include "tests/harness/run_program.h"
@@ -21,7 +21,7 @@ std::string splitting_solvers() {
   for (const StrategyRow& strategy : strategy_table())
     for (const KernelRow& kernel : kernel_table())
       if (kernel.splits && runs_on(strategy, kernel))
-        names.push_back(std::string(strategy.entry.name) + ":" + kernel.entry.name);
+        names.push_back(std::string(strategy.name) + ":" + kernel.name);
   return joined(names, ",");
 }
 

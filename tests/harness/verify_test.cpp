@@ -5,7 +5,7 @@
 #include <fstream>
 #include <functional>
 
-#include "harness/problem_file.h"
+#include "harness/files/problem_file.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -157,23 +157,34 @@ TEST_F(Verify, FindsABodyInAnotherPart) {
   expect_failure(out(), {"solution_hash"});
 }
 
+void set_parameter(StoredPartition& partition, const std::string& name, const std::string& text) {
+  for (StoredParameter& parameter : partition.parameters)
+    if (parameter.name == name) parameter.text = text;
+}
+
 TEST_F(Verify, FindsAnOptionThatDidNotShapeTheParts) {
-  change_file([](ProblemFile& f) { f.partitions.at(kLabel).options.partition.max_bodies = 3; });
+  change_file([](ProblemFile& f) { set_parameter(f.partitions.at(kLabel), "max_bodies", "3"); });
   expect_failure(file(), {"bodies differ"});
 }
 
-TEST_F(Verify, CountsForeignPartitionsWithoutSplitting) {
+// What cannot be split again was not checked, and says so.
+TEST_F(Verify, FindsAPartitionerThatIsNone) {
   change_file([](ProblemFile& f) {
-    StoredPartition foreign = f.partitions.at(kLabel);
-    foreign.partitioner = "spectral";
-    foreign.part_of_body.assign(20, 0);
-    f.partitions["spectral+fm"] = foreign;
+    StoredPartition misspelt = f.partitions.at(kLabel);
+    misspelt.partitioner = "mindq";
+    f.partitions["mindq+fm"] = misspelt;
   });
-  const ProgramResult result = run_cleave({"verify", file()});
-  EXPECT_EQ(result.exit_code, 0) << result.out;
-  EXPECT_NE(result.out.find("partition/spectral+fm: 1 parts, 0 cut pairs, 0 interface rows; not split again"),
-            std::string::npos)
-      << result.out;
+  expect_failure(file(),
+                 {"cannot be split again: --partitioner: 'mindq' is unknown (did you mean 'mindp'?)"});
+}
+
+TEST_F(Verify, FindsAParameterOutsideItsRangeOrMissing) {
+  change_file([](ProblemFile& f) { set_parameter(f.partitions.at(kLabel), "max_bodies", "0"); });
+  expect_failure(file(), {"cannot be split again: --max-bodies: 0 is not in [1, inf)"});
+  change_file([](ProblemFile& f) {
+    std::erase_if(f.partitions.at(kLabel).parameters, [](const auto& p) { return p.name == "max_bodies"; });
+  });
+  expect_failure(file(), {"cannot be split again: max_bodies is missing"});
 }
 
 TEST_F(Verify, FindsAProblemThatIsNotTheRows) {

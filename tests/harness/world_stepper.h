@@ -9,11 +9,11 @@
 #include <utility>
 #include <vector>
 
-#include "harness/extract.h"
-#include "harness/friction.h"
-#include "harness/ode_world.h"
+#include "harness/experiment/friction.h"
+#include "harness/world/extract.h"
+#include "harness/world/ode_world.h"
+#include "solver/registry.h"
 #include "solver/residual.h"
-#include "solver/step_solver.h"
 
 namespace cleave {
 

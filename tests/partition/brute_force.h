@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "partition/partition.h"
-#include "partition/refiner.h"
+#include "tests/partition/paper_options.h"
 #include "tests/partition/test_graphs.h"
 
 namespace cleave::partition_test {

@@ -4,8 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "partition/partitioner.h"
-#include "partition/refiner.h"
 #include "tests/partition/brute_force.h"
 #include "tests/partition/test_graphs.h"
 
@@ -52,16 +50,17 @@ class FixedPartitioner : public Partitioner {
   explicit FixedPartitioner(Partition answer) : answer_(std::move(answer)) {}
 
  private:
-  Partition do_run(const BodyGraph&, const PartitionOptions&) const override { return answer_; }
+  Partition do_run(const BodyGraph&) const override { return answer_; }
   Partition answer_;
 };
 
 class FixedRefiner : public Refiner {
  public:
-  FixedRefiner(Partition answer, RefineSummary summary) : answer_(std::move(answer)), summary_(summary) {}
+  FixedRefiner(Partition answer, RefineSummary summary)
+      : Refiner(EdgeWeight::rows), answer_(std::move(answer)), summary_(summary) {}
 
  private:
-  RefineSummary do_run(const BodyGraph&, const RefineOptions&, Partition& partition) const override {
+  RefineSummary do_run(const BodyGraph&, int, Partition& partition) const override {
     partition = answer_;
     return summary_;
   }
@@ -69,20 +68,33 @@ class FixedRefiner : public Refiner {
   RefineSummary summary_;
 };
 
+Partition run_promised(const Partition& answer, const PartsPromise& promise, int max_bodies) {
+  FixedPartitioner partitioner(answer);
+  partitioner.promise(promise, max_bodies);
+  return partitioner.run(three_and_one().graph());
+}
+
+constexpr PartsPromise kAll{.contiguous = true, .at_most_max_bodies = true, .grown_in_order = true};
+
 TEST(PartitionerDeathTest, run_asserts_its_postconditions) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
-  const BodyGraph graph = three_and_one().graph();
-  const PartitionOptions options{.max_bodies = 3};
   const Partition good{{0, 0, 0, 1}, 2};
-  EXPECT_EQ(first_difference(good, FixedPartitioner(good).run(graph, options)), "");
-  EXPECT_DEATH(FixedPartitioner(good).run(graph, {.max_bodies = 2}), "");
-  for (const Partition& bad : {Partition{{0, 1, 0, 2}, 3},
-                               {{0, 0, 0, 2}, 3},
-                               {{0, 0, 0, 2}, 2},
-                               {{0, 0, 0, -1}, 1},
-                               {{0, 0, 0}, 1}}) {
-    EXPECT_DEATH(FixedPartitioner(bad).run(graph, options), "");
-  }
+  EXPECT_EQ(first_difference(good, run_promised(good, kAll, 3)), "");
+  for (const Partition& bad :
+       {Partition{{0, 0, 0, 2}, 3}, {{0, 0, 0, 2}, 2}, {{0, 0, 0, -1}, 1}, {{0, 0, 0}, 1}})
+    EXPECT_DEATH(run_promised(bad, {}, 3), "");  // whatever is promised
+}
+
+// What was not promised may be.
+TEST(PartitionerDeathTest, run_asserts_what_was_promised_and_no_more) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const Partition large{{0, 0, 0, 1}, 2}, scattered{{0, 1, 0, 2}, 3}, closed_early{{0, 1, 1, 2}, 3};
+  EXPECT_EQ(run_promised(large, {.contiguous = true}, 2).part_count, 2);
+  EXPECT_DEATH(run_promised(large, {.at_most_max_bodies = true}, 2), "");
+  EXPECT_EQ(run_promised(scattered, {.at_most_max_bodies = true}, 3).part_count, 3);
+  EXPECT_DEATH(run_promised(scattered, {.contiguous = true}, 3), "");
+  EXPECT_EQ(run_promised(closed_early, {.contiguous = true, .at_most_max_bodies = true}, 3).part_count, 3);
+  EXPECT_DEATH(run_promised(closed_early, kAll, 3), "");
 }
 
 TEST(RefinerDeathTest, run_asserts_its_postconditions) {
@@ -91,7 +103,7 @@ TEST(RefinerDeathTest, run_asserts_its_postconditions) {
   const Partition before{{0, 1, 1, 2}, 3};
   const auto run = [&](const Partition& answer, const RefineSummary& summary) {
     Partition partition = before;
-    FixedRefiner(answer, summary).run(graph, {}, partition);
+    FixedRefiner(answer, summary).run(graph, 25, partition);
   };
   run(before, {0, 3, 3});
   EXPECT_DEATH(run(before, {0, 3, 2}), "");             // cut_after is not the cut

@@ -8,8 +8,7 @@
 
 #include "partition/body_graph.h"
 #include "partition/partition.h"
-#include "partition/partitioner.h"
-#include "partition/refiner.h"
+#include "tests/partition/paper_options.h"
 
 namespace cleave::partition_test {
 

@@ -35,15 +35,16 @@ const Entry* registered(std::span<const Entry> table, const std::string& name) {
 // "" if the fast partitioner and its twin agree.
 std::string difference(const PartitionerEntry& fast, const PartitionerTwin& twin, const BodyGraph& graph,
                        const PartitionOptions& options) {
-  return first_difference(twin.run(graph, options), fast.make()->run(graph, options));
+  return first_difference(twin.run(graph, options), run(fast, graph, options));
 }
 
 std::string difference(const RefinerEntry& fast, const RefinerTwin& twin, const BodyGraph& graph,
-                       const RefineOptions& options, const Partition& start) {
+                       const RefineOptions& drawn, const Partition& start) {
+  const RefineOptions options = options_of(fast, drawn);
   Partition expected = start;
   Partition actual = start;
   const RefineSummary expected_summary = twin.run(graph, options, expected);
-  const RefineSummary summary = fast.make()->run(graph, options, actual);
+  const RefineSummary summary = run(fast, graph, options, actual);
   if (const std::string text = first_difference(expected, actual); !text.empty()) return text;
   std::ostringstream text;
   const auto compare = [&](const char* field, long expected_value, long value) {

@@ -237,8 +237,8 @@ TEST(FileErrors, AFileThatCannotBeRead) {
     return "";
   };
   EXPECT_EQ(error_of_path("no/such.toml"),
-            "--path: 'no/such.toml' cannot be read, or is empty; allowed: a scene file");
-  EXPECT_EQ(error_of_path("/"), "--path: '/' cannot be read, or is empty; allowed: a scene file");
+            "--scene file@path: 'no/such.toml' cannot be read, or is empty; allowed: a scene file");
+  EXPECT_EQ(error_of_path("/"), "--scene file@path: '/' cannot be read, or is empty; allowed: a scene file");
 }
 
 // A file that was refused is read anew: nothing is kept of it.

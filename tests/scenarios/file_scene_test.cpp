@@ -334,7 +334,7 @@ TEST(FileScene, ContactLayerIsTheWorlds) {
 TEST(FileScene, IsReadOnce) {
   const WrittenScene file(kBall + "position_m = [0, 0, 1]\n");
   SceneWorld before(scene_named("file"), file.given());
-  const SceneSettings settings = make_scene_settings(scene_named("file"), file.given());
+  const Settings settings = make_scene_settings(scene_named("file"), file.given());
   const std::string id = scene_content_id(scene_named("file"), settings);
   file.write("nonsense");
   SceneWorld after(scene_named("file"), file.given());

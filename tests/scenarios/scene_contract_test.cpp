@@ -33,12 +33,12 @@ std::vector<Case> all_cases() {
     };
     Given smallest = scene.given;
     cases.push_back({scene, scene.given});
-    for (const SceneParameter& parameter : scene.entry->parameters) {
-      if (parameter.type == SceneParameter::Type::integer) {
-        with(parameter.name, number_text(parameter.min));
-        smallest[parameter.name] = number_text(parameter.min);
+    for (const Parameter& parameter : scene.entry->parameters) {
+      if (parameter.kind == Parameter::Kind::integer) {
+        with(parameter.name, number_text(parameter.range.min));
+        smallest[parameter.name] = number_text(parameter.range.min);
       }
-      for (const std::string& choice : parameter.choices) with(parameter.name, choice);
+      for (const std::string& choice : parameter.words) with(parameter.name, choice);
     }
     if (smallest != scene.given) cases.push_back({scene, smallest});
   }
@@ -114,8 +114,8 @@ TEST(SceneContract, NothingFallsThroughTheStaticPlanes) {
   for (const ShippedScene& scene : shipped_scenes()) {
     if (of_ladder(scene)) continue;
     Given small = scene.given;
-    for (const SceneParameter& parameter : scene.entry->parameters)
-      if (parameter.type == SceneParameter::Type::integer)
+    for (const Parameter& parameter : scene.entry->parameters)
+      if (parameter.kind == Parameter::Kind::integer)
         small[parameter.name] = number_text(std::min(30.0, std::stod(parameter.default_value)) / 3);
     SceneWorld world(*scene.entry, small.count("logs") ? Given{{"layers", "5"}, {"logs", "3"}} : small);
     for (int step = 0; step < 200; ++step) world.step(step, 30);

@@ -43,9 +43,9 @@ inline std::vector<ShippedScene> shipped_scenes() {
 
 // As they stand on a command line.
 inline std::vector<std::string> arguments_of(const ShippedScene& scene) {
-  std::vector<std::string> arguments = {"--scene", scene.entry->name};
-  for (const auto& [name, value] : scene.given) arguments.insert(arguments.end(), {"--" + name, value});
-  return arguments;
+  std::string text = scene.entry->name;
+  for (const auto& [name, value] : scene.given) text += "@" + name + "=" + value;
+  return {"--scene", text};
 }
 
 }  // namespace cleave

@@ -46,8 +46,8 @@ std::vector<std::string> solver_names() {
   std::vector<std::string> names = {"exact"};
   for (const StrategyRow& strategy : strategy_table()) {
     for (const KernelRow& kernel : kernel_table()) {
-      if (std::string_view(kernel.entry.name) == "dense" || !runs_on(strategy, kernel)) continue;
-      names.push_back(std::string(strategy.entry.name) + ":" + std::string(kernel.entry.name));
+      if (std::string_view(kernel.name) == "dense" || !runs_on(strategy, kernel)) continue;
+      names.push_back(std::string(strategy.name) + ":" + std::string(kernel.name));
     }
   }
   return names;
@@ -57,8 +57,7 @@ void AllocationTest::second_solve_allocates_nothing(const StepProblem& problem, 
   const std::vector<int> parts = sliced_parts(problem.body_count(), 4);
   SolveOptions options;
   options.threads = threads;
-  options.reuse_analysis = true;
-  const auto solver = make_step_solver(GetParam(), options);
+  const auto solver = make_step_solver(GetParam() + "@reuse-analysis=true", options);
   Solution first = cold_start(problem);
   ASSERT_TRUE(is_exact(problem, solver->solve(problem, parts, first), first));
 

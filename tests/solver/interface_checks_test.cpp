@@ -114,7 +114,7 @@ class SpoiltKernel : public Kernel {
 
 std::unique_ptr<Kernel> make_kernel(const std::string& name) {
   for (const KernelRow& row : kernel_table())
-    if (name == row.entry.name) return row.make();
+    if (name == row.name) return row.make(defaults_of(row));
   throw std::logic_error(name);
 }
 
@@ -130,14 +130,14 @@ Claim run_strategy(const StrategyRow& strategy, Kernel& kernel, const StepProble
   clock.start();
   PreparedStep step;
   step.prepare(problem);
-  SolveState state(SolveOptions{}, clock);
+  SolveState state(DirectOptions{}, clock);
   SolveSummary summary;
   kernel.analyze(step, parts, state.tasks);
   const std::vector<double> cold(problem.row_count(), 0.0);
   state.begin(step, kernel, summary, cold);
   state.part_of_body = parts;
   Claim claim;
-  claim.success = strategy.make()->run(state);
+  claim.success = strategy.make(defaults_of(strategy))->run(state);
   claim.exact = judge(problem, state.impulse).exact;
   return claim;
 }
@@ -145,7 +145,7 @@ Claim run_strategy(const StrategyRow& strategy, Kernel& kernel, const StepProble
 TEST_P(InterfaceChecks, StrategiesDoNotBelieveAKernelThatIsOffInOneCutRow) {
   for (const StrategyRow& strategy : strategy_table()) {
     if (strategy.make == nullptr) continue;
-    SCOPED_TRACE(strategy.entry.name);
+    SCOPED_TRACE(strategy.name);
     SpoiltKernel true_kernel(make_kernel(GetParam()), 0, 0, 0.0);
     const Claim truth = run_strategy(strategy, true_kernel, problem_, parts_);
     EXPECT_EQ(truth.success, truth.exact);

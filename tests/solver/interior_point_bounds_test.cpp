@@ -116,7 +116,7 @@ TEST_P(InteriorPointBoundsTest, AllKindsOfBoundsOnBodiesFromOneToAMillionKilogra
 std::vector<std::string> kernel_names() {
   std::vector<std::string> names;
   for (const KernelRow& row : kernel_table())
-    if (std::string_view(row.entry.name) == row.resolved) names.emplace_back(row.entry.name);
+    if (std::string_view(row.name) == row.resolved) names.emplace_back(row.name);
   return names;
 }
 

@@ -21,16 +21,16 @@ TEST(SolverRegistryTest, HasTheNamedSolversAndEveryRowHasHelp) {
   for (std::size_t i = 0; i < names.size(); ++i) {
     EXPECT_EQ(std::count(names.begin(), names.end(), names[i]), 1) << names[i];
   }
-  const auto check_entry = [](const SolverEntry& entry) {
+  const auto check_entry = [](const AlgorithmEntry& entry) {
     EXPECT_STRNE(entry.help, "") << entry.name;
     EXPECT_EQ(std::string_view(entry.help).find('\n'), std::string_view::npos) << entry.name;
     EXPECT_STRNE(entry.reference, "") << entry.name;
   };
-  for (const StrategyRow& row : strategy_table()) check_entry(row.entry);
-  for (const KernelRow& row : kernel_table()) check_entry(row.entry);
+  for (const StrategyRow& row : strategy_table()) check_entry(row);
+  for (const KernelRow& row : kernel_table()) check_entry(row);
   for (const SolverRow& row : solver_table()) {
-    check_entry(row.entry);
-    EXPECT_EQ(std::count(names.begin(), names.end(), row.entry.name), 1) << row.entry.name;
+    check_entry(row);
+    EXPECT_EQ(std::count(names.begin(), names.end(), row.name), 1) << row.name;
   }
 }
 
@@ -39,6 +39,25 @@ TEST(SolverRegistryTest, UnknownNamesAreRefused) {
                            "alternate:dense", "pivot:dense:dense", "schur "}) {
     EXPECT_THROW(make_step_solver(name, {}), std::invalid_argument) << "'" << name << "'";
   }
+}
+
+std::string refusal(const std::string& text) {
+  try {
+    make_step_solver(text);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(SolverRegistryTest, ParametersOfOthersAndBadValuesAreRefusedByName) {
+  EXPECT_NE(refusal("schur@sweeps=5").find("sweeps is a parameter of pgs; schur has: max-iterations"),
+            std::string::npos)
+      << refusal("schur@sweeps=5");
+  EXPECT_NE(refusal("pgs@predictor-sweeps=5").find("strategy pivot"), std::string::npos);
+  EXPECT_NE(refusal("pgs@sweeps=-1").find("pgs@sweeps: -1 is not in [0, inf)"), std::string::npos);
+  EXPECT_NE(refusal("exact@max-iteration=3").find("'max-iterations'?"), std::string::npos);
+  EXPECT_EQ(refusal("interior-point:schur-bodies@max-iterations=3@reuse-analysis=true"), "");
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ StepProblem without(StepProblem problem, Drop drop) {
 std::vector<std::string> kernel_names() {
   std::vector<std::string> names;
   for (const KernelRow& row : kernel_table()) {
-    if (std::string_view(row.entry.name) == row.resolved) names.emplace_back(row.entry.name);
+    if (std::string_view(row.name) == row.resolved) names.emplace_back(row.name);
   }
   return names;
 }
@@ -64,9 +64,7 @@ TEST_P(ReuseAnalysisTest, SolvesEverySubsetAndWhatLiesOutside) {
       without(whole, [](int a, int b, int) { return b >= 0 && (a + b) % 4 == 0; });
   const std::vector<int> parts = sliced_parts(whole.body_count(), 4);
   for (const char* strategy : {"pivot", "interior-point"}) {
-    SolveOptions options;
-    options.reuse_analysis = true;
-    const auto used = make_step_solver(std::string(strategy) + ":" + GetParam(), options);
+    const auto used = make_step_solver(std::string(strategy) + ":" + GetParam() + "@reuse-analysis=true");
     for (const StepProblem* problem : {&fewer_pairs, &whole, &fewer, &fewer_pairs, &whole, &fewer}) {
       Solution kept = cold_start(*problem), fresh = cold_start(*problem);
       ASSERT_TRUE(is_exact(*problem, used->solve(*problem, parts, kept), kept)) << strategy;
@@ -86,8 +84,8 @@ TEST_P(ReuseAnalysisTest, KeepsThePatternOfTheWholeForItsSubset) {
   ParallelTasks tasks(clock, 1);
   PreparedStep step;
   for (const KernelRow& row : kernel_table()) {
-    if (row.entry.name != GetParam()) continue;
-    const auto kernel = row.make(), fresh = row.make();
+    if (row.name != GetParam()) continue;
+    const auto kernel = row.make(defaults_of(row)), fresh = row.make(defaults_of(row));
     step.prepare(whole);
     kernel->analyze(step, parts, tasks);
     const double of_whole = kernel->local_mflop() + kernel->interface_mflop();

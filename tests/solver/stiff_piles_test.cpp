@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "solver/registry.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/solver_checks.h"
 

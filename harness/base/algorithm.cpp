@@ -1,0 +1,84 @@
+#include "harness/base/algorithm.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "harness/base/names.h"
+
+namespace cleave {
+namespace {
+
+using Given = std::map<std::string, std::string>;
+
+[[noreturn]] void reject(const std::string& option, const std::string& text) {
+  throw std::invalid_argument(option + ": " + text);
+}
+
+Given read_given(const std::string& option, const std::string& text) {
+  Given given;
+  for (std::size_t at = text.find('@'); at != std::string::npos;) {
+    const std::size_t next = text.find('@', at + 1);
+    const std::string part = text.substr(at + 1, next == std::string::npos ? next : next - at - 1);
+    const std::size_t equals = part.find('=');
+    if (equals == 0 || equals == std::string::npos)
+      reject(option, "'" + text + "': write name@parameter=value, not '@" + part + "'");
+    if (!given.emplace(part.substr(0, equals), part.substr(equals + 1)).second)
+      reject(option, "'" + text + "': " + part.substr(0, equals) + " is given twice");
+    at = next;
+  }
+  return given;
+}
+
+void check_known(const std::string& option, const std::string& text, const Given& given,
+                 const std::vector<std::string>& names, const ParameterOwners& owners) {
+  for (const auto& [name, value] : given) {
+    if (std::ranges::find(names, name) != names.end()) continue;
+    const std::string owner = owners(name);
+    const std::string& algorithm = algorithm_name(text);
+    const std::string has =
+        "; " + algorithm + (names.empty() ? " has no parameters" : " has: " + joined(names));
+    if (!owner.empty()) reject(option, "'" + text + "': " + name + " is a parameter of " + owner + has);
+    const std::string nearest = nearest_name(name, names);
+    const std::string question = nearest.empty() ? "" : " (did you mean '" + nearest + "'?)";
+    reject(option, "'" + text + "': '" + name + "' is no parameter" + question + has);
+  }
+}
+
+}  // namespace
+
+std::string algorithm_name(const std::string& text) { return text.substr(0, text.find('@')); }
+
+Algorithm read_algorithm(const std::string& option, const std::string& text,
+                         std::span<const Parameter> parameters, const Given& common,
+                         const ParameterOwners& owners) {
+  const Given given = read_given(option, text);
+  check_known(option, text, given, names_of(parameters), owners);
+  const std::string name = algorithm_name(text);
+  Given values;
+  for (const Parameter& parameter : parameters) {
+    const auto own = given.find(parameter.name), shared = common.find(parameter.name);
+    if (own != given.end()) {
+      const std::string place = option + " " + name + "@" + parameter.name;
+      values[parameter.name] = checked_value(parameter, place, own->second);
+    } else if (shared != common.end()) {
+      values[parameter.name] = checked_value(parameter, "--" + parameter.name, shared->second);
+    } else if (!parameter.default_value.empty()) {
+      values[parameter.name] = checked_value(parameter, parameter.name, parameter.default_value);
+    } else {
+      const std::string way = parameter.kind == Parameter::Kind::path ? "" : ", or --" + parameter.name;
+      reject(option, name + " needs " + parameter.name + ": write " + name + "@" + parameter.name + "=" +
+                         (parameter.kind == Parameter::Kind::path ? "FILE" : "VALUE") + way);
+    }
+  }
+  return {text, name, Settings(std::move(values))};
+}
+
+Settings defaults_of(const AlgorithmEntry& entry) {
+  std::map<std::string, std::string> values;
+  for (const Parameter& parameter : entry.parameters)
+    if (!parameter.default_value.empty())
+      values[parameter.name] = checked_value(parameter, parameter.name, parameter.default_value);
+  return Settings(std::move(values));
+}
+
+}  // namespace cleave

@@ -1,0 +1,50 @@
+// A row of a registry, and an algorithm as a user names it: name@parameter=value@parameter=value.
+//
+// Several settings of one algorithm can stand side by side on the same problems:
+//     --partitioner mindp@max-bodies=25,mindp@max-bodies=50
+// Tables and figures show the text as it was given.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "harness/base/parameter.h"
+
+namespace cleave {
+
+// What every registry row begins with.
+struct AlgorithmEntry {
+  const char* name;
+  const char* help;       // one line
+  const char* reference;  // where it is described
+  std::vector<Parameter> parameters = {};
+};
+
+// An algorithm with a value for each of its parameters.
+struct Algorithm {
+  std::string text;  // what tables show: the text as given, or with a fingerprint in place of a file's name
+  std::string name;  // of its row
+  Settings settings;
+};
+
+// Who has a parameter, in words ("partitioner mr"), for errors; empty: nobody.
+using ParameterOwners = std::function<std::string(const std::string& parameter)>;
+
+// The part before the first @.
+std::string algorithm_name(const std::string& text);
+
+// Reads the text against the parameters of its algorithm; what it does not give comes from `common` and then
+// from the defaults. option: what errors begin with ("--partitioner"). Throws std::invalid_argument with one
+// line for a text of another form, a parameter that the algorithm does not have (naming who has it), a value
+// that is not allowed, and a parameter without default that is given nowhere.
+Algorithm read_algorithm(const std::string& option, const std::string& text,
+                         std::span<const Parameter> parameters,
+                         const std::map<std::string, std::string>& common, const ParameterOwners& owners);
+
+// The defaults of all parameters that have one.
+Settings defaults_of(const AlgorithmEntry& entry);
+
+}  // namespace cleave

@@ -1,0 +1,73 @@
+#include "harness/commands/stored_partition.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "harness/experiment/algorithms.h"
+
+namespace cleave {
+namespace {
+
+constexpr const char* kSkipSmallIslands = "skip_small_islands";
+constexpr const char* kOfRefiner = "refiner_";
+
+void add_parameters(const std::string& option, const Algorithm& algorithm, const std::string& prefix,
+                    std::vector<StoredParameter>& to) {
+  for (const Parameter& parameter : parameters_of(option, algorithm.name)) {
+    if (parameter.kind == Parameter::Kind::path) continue;
+    const StoredParameter plain{column_of(parameter), parameter.kind,
+                                algorithm.settings.text(parameter.name)};
+    if (std::ranges::count(to, plain) > 0) continue;
+    const bool taken = std::ranges::count(to, plain.name, &StoredParameter::name) > 0;
+    to.push_back({(taken ? prefix : "") + plain.name, plain.kind, plain.text});
+  }
+}
+
+const StoredParameter* find_stored(const StoredPartition& partition, const std::string& name) {
+  const auto found = std::ranges::find(partition.parameters, name, &StoredParameter::name);
+  return found == partition.parameters.end() ? nullptr : &*found;
+}
+
+// The stored values of an algorithm's parameters, by parameter name.
+CommonValues stored_values(const StoredPartition& partition, const std::string& option,
+                           const std::string& name, const std::string& prefix) {
+  CommonValues values;
+  for (const Parameter& parameter : parameters_of(option, name)) {
+    if (parameter.kind == Parameter::Kind::path) continue;
+    const std::string column = column_of(parameter);
+    const StoredParameter* own = find_stored(partition, prefix + column);
+    const StoredParameter* stored = own != nullptr ? own : find_stored(partition, column);
+    if (stored == nullptr)
+      throw std::invalid_argument(column + " is missing, which " + option + " " + name + " has");
+    values[parameter.name] = stored->text;
+  }
+  return values;
+}
+
+Algorithm read_stored(const StoredPartition& partition, const std::string& option, const std::string& text,
+                      const std::string& prefix) {
+  check_algorithm(option, text);
+  return read_named(option, text, stored_values(partition, option, algorithm_name(text), prefix));
+}
+
+}  // namespace
+
+StoredPartition stored_partition(const Algorithm& partitioner, const Algorithm& refiner,
+                                 bool skip_small_islands, std::vector<int> part_of_body) {
+  StoredPartition stored{partitioner.text, refiner.text, {}, std::move(part_of_body)};
+  add_parameters("partitioner", partitioner, "", stored.parameters);
+  add_parameters("refiner", refiner, kOfRefiner, stored.parameters);
+  stored.parameters.push_back(
+      {kSkipSmallIslands, Parameter::Kind::flag, skip_small_islands ? "true" : "false"});
+  return stored;
+}
+
+SplitSetup read_split_setup(const StoredPartition& partition) {
+  SplitSetup setup{read_stored(partition, "partitioner", partition.partitioner, ""),
+                   read_stored(partition, "refiner", partition.refiner, kOfRefiner)};
+  const StoredParameter* skip = find_stored(partition, kSkipSmallIslands);
+  setup.skip_small_islands = skip != nullptr && skip->text == "true";
+  return setup;
+}
+
+}  // namespace cleave

@@ -1,0 +1,25 @@
+// Between the partition of a combination and what a problem file keeps of it.
+#pragma once
+
+#include <vector>
+
+#include "harness/base/algorithm.h"
+#include "harness/files/problem_file.h"
+
+namespace cleave {
+
+// With every parameter that shaped it.
+StoredPartition stored_partition(const Algorithm& partitioner, const Algorithm& refiner,
+                                 bool skip_small_islands, std::vector<int> part_of_body);
+
+// How the bodies were split.
+struct SplitSetup {
+  Algorithm partitioner, refiner;
+  bool skip_small_islands = false;
+};
+
+// Throws std::invalid_argument with one line: an algorithm that is none of ours, a parameter that is missing,
+// of another type or outside its range.
+SplitSetup read_split_setup(const StoredPartition& partition);
+
+}  // namespace cleave

@@ -1,0 +1,211 @@
+#include "harness/experiment/combination.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <new>
+
+#include "harness/base/hash.h"
+#include "harness/experiment/part_condition.h"
+#include "solver/problem_hash.h"
+
+namespace cleave {
+namespace {
+
+// What the solver is handed: a solver that ignores parts still receives one id per body.
+std::vector<int> solver_parts(const std::optional<Split>& split, const StepProblem& problem) {
+  return split ? split->parts.part_of_body : std::vector<int>(problem.body_count(), 0);
+}
+
+bool all_finite(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
+}
+
+// The judge's word counts: a solver that says ok is believed only within the limit.
+void judge_outcome(const StepProblem& problem, Outcome& outcome) {
+  outcome.verdict = judge(problem, outcome.solution.impulse);
+  outcome.finite = all_finite(outcome.solution.impulse) && all_finite(outcome.solution.velocity) &&
+                   all_finite(outcome.verdict.velocity);
+  if (!outcome.solved()) return;
+  if (!outcome.finite) {
+    outcome.status = SolveStatus::diverged;
+  } else if (outcome.status == SolveStatus::ok && !outcome.verdict.exact) {
+    outcome.status = SolveStatus::not_converged;
+  }
+}
+
+bool same_bytes(std::span<const double> a, std::span<const double> b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+}
+
+// Index of the median of a number per repeat; the lower middle one of an even number.
+template <class Items, class Value>
+std::size_t median_index(const Items& items, Value value) {
+  std::vector<std::size_t> order(items.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return value(items[i]); });
+  return order[(order.size() - 1) / 2];
+}
+
+template <class Items, class Value>
+double median(const Items& items, Value value) {
+  return value(items[median_index(items, value)]);
+}
+
+template <class Repeats>
+void set_split(const StepProblem& problem, const Repeats& repeats, StepRecord& row) {
+  const Split& split = *repeats.front().split;
+  row.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
+  row.set_partition(measure_partition(split.graph, split.parts.part_of_body));
+  row.part_condition_max = largest_part_condition(problem, split.parts.part_of_body);
+  row.t_graph_ms = median(repeats, [](const auto& repeat) { return repeat.split->graph_ms; });
+  row.t_partition_ms = median(repeats, [](const auto& repeat) { return repeat.split->partition_ms; });
+  row.t_refine_ms = median(repeats, [](const auto& repeat) { return repeat.split->refine_ms; });
+  row.t_pr_ms = median(
+      repeats, [](const auto& repeat) { return repeat.split->partition_ms + repeat.split->refine_ms; });
+}
+
+// A solver that returned nothing left nothing to judge.
+void set_verdict(const StepProblem& problem, const Outcome& outcome, StepRecord& row) {
+  if (outcome.status != SolveStatus::ok && !outcome.summary.message.empty())
+    row.status_reason = outcome.summary.message;
+  if (!outcome.solved()) return;
+  row.set_verdict(outcome.verdict);
+  row.bound_mismatch = bound_mismatch(problem, outcome.solution.impulse);
+}
+
+bool uses_parts(const Algorithm& solver, const StepContext& context) {
+  return make_solver(solver, 1, context)->uses_partition();
+}
+
+}  // namespace
+
+Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner, const Algorithm& solver,
+                         const RunOptions& options, const StepContext& context)
+    : name_{.solver = solver.text},
+      solver_named_(solver),
+      repeats_(options.repeats),
+      solver_(make_solver(solver, options.threads, context)) {
+  if (solver_->uses_partition()) {
+    splitter_.emplace(partitioner, refiner, options.skip_small_islands);
+    name_.partitioner = partitioner.text;
+    name_.refiner = refiner.text;
+    partitioner_ = partitioner;
+    refiner_ = refiner;
+  }
+}
+
+std::optional<Split> Combination::split(const StepProblem& problem) const {
+  return splitter_ ? std::optional(splitter_->run(problem)) : std::nullopt;
+}
+
+Combination::Repeat Combination::repeat(const StepProblem& problem) {
+  Repeat repeat{split(problem), {}};
+  const std::vector<int> parts = solver_parts(repeat.split, problem);
+  Outcome& outcome = repeat.outcome;
+  outcome.solution.impulse = problem.warm_impulse;
+  outcome.solution.velocity.assign(problem.free_velocity.size(), 0.0);
+  try {
+    const CoreMeter meter;
+    outcome.summary = solver_->solve(problem, parts, outcome.solution);
+    outcome.cores = meter.stop();
+    outcome.status = outcome.summary.status;
+  } catch (const std::bad_alloc&) {
+    outcome.status = outcome.summary.status = SolveStatus::out_of_memory;
+    outcome.summary.message = "no memory for the solve";
+    outcome.solution = {problem.warm_impulse, problem.free_velocity};
+  }
+  return repeat;
+}
+
+void Combination::set_names(StepRecord& row) const {
+  row.partitioner = name_.partitioner;
+  row.refiner = name_.refiner;
+  row.solver = name_.solver;
+  for (const Algorithm* algorithm : {&partitioner_, &refiner_, &solver_named_})
+    row.add_parameters(algorithm->settings);
+}
+
+Outcome Combination::solve(const StepProblem& problem) {
+  Outcome outcome = repeat(problem).outcome;
+  judge_outcome(problem, outcome);
+  return outcome;
+}
+
+Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
+  std::vector<Repeat> repeats;
+  for (int i = 0; i < repeats_; ++i) {
+    repeats.push_back(repeat(problem));
+    if (!repeats.back().outcome.solved()) break;  // a failure has no time to take the median of
+    // What one solve leaves in the solver's scratch must not reach the next, or repeats would time another
+    // problem.
+    assert(same_bytes(repeats.back().outcome.solution.impulse, repeats.front().outcome.solution.impulse));
+  }
+  const auto total_ms = [](const Repeat& repeat) { return repeat.outcome.summary.times.total_ms; };
+  const bool failed = !repeats.back().outcome.solved();
+  Repeat& chosen = failed ? repeats.back() : repeats[median_index(repeats, total_ms)];
+  judge_outcome(problem, chosen.outcome);
+
+  set_names(row);
+  row.repeat_count = static_cast<int>(repeats.size());
+  row.status = to_string(chosen.outcome.status);
+  row.ode_messages += chosen.outcome.summary.engine_messages;
+  if (splitter_) set_split(problem, repeats, row);
+  row.set_summary(chosen.outcome.summary);
+  row.peak_memory_mb = peak_memory_mb();
+  set_verdict(problem, chosen.outcome, row);
+  if (splitter_) chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
+  if (!failed) {
+    const auto [least, most] = std::ranges::minmax_element(repeats, {}, total_ms);
+    row.t_s_min_ms = total_ms(*least);
+    row.t_s_max_ms = total_ms(*most);
+    row.t_s_cpu_ms = chosen.outcome.cores.cpu_ms;
+    row.t_s_waiting_ms = chosen.outcome.cores.waiting_ms;
+    row.solution_hash = hex(solution_hash(chosen.outcome.solution.impulse, chosen.outcome.part_of_body));
+  }
+  return std::move(chosen.outcome);
+}
+
+ConvergedBounds Combination::converge_bounds(StepProblem& problem) {
+  Solution solution{problem.warm_impulse, {}};
+  return converge_friction_bounds(problem, *solver_, solver_parts(split(problem), problem), solution);
+}
+
+std::vector<Combination> make_combinations(const RunOptions& options, const StepContext& context) {
+  std::vector<Combination> splitting, whole;
+  for (const Algorithm& partitioner : options.partitioners)
+    for (const Algorithm& refiner : options.refiners)
+      for (const Algorithm& solver : options.solvers)
+        if (uses_parts(solver, context))
+          splitting.emplace_back(partitioner, refiner, solver, options, context);
+  for (const Algorithm& solver : options.solvers)
+    if (!uses_parts(solver, context)) whole.emplace_back(Algorithm{}, Algorithm{}, solver, options, context);
+  std::ranges::move(whole, std::back_inserter(splitting));
+  return splitting;
+}
+
+std::vector<CombinationName> combination_names(const RunOptions& options) {
+  const StepContext context;
+  std::vector<CombinationName> names;
+  for (const Combination& combination : make_combinations(options, context))
+    names.push_back(combination.name());
+  return names;
+}
+
+std::vector<Outcome> measure_all(std::span<Combination> combinations, const StepProblem& problem, int turn,
+                                 std::span<StepRecord> rows) {
+  std::vector<Outcome> outcomes(combinations.size());
+  for (std::size_t k = 0; k < combinations.size(); ++k) {
+    const std::size_t i = (k + static_cast<std::size_t>(turn)) % combinations.size();
+    outcomes[i] = combinations[i].measure(problem, rows[i]);
+  }
+  return outcomes;
+}
+
+Combination make_advancing_combination(const RunOptions& options, const StepContext& context) {
+  return {options.partitioners.front(), options.refiners.front(), options.advance, options, context};
+}
+
+}  // namespace cleave

@@ -1,0 +1,107 @@
+// One (partitioner, refiner, solver) of a run: what solves a step problem and fills one row of steps.csv.
+//
+// Every combination has its own solver object, hence its own scratch, and starts from its own copy of the
+// warm start: nothing passes between combinations.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "harness/base/combination_label.h"
+#include "harness/experiment/core_meter.h"
+#include "harness/experiment/friction.h"
+#include "harness/experiment/options.h"
+#include "harness/experiment/splitter.h"
+#include "harness/experiment/step_record.h"
+#include "solver/residual.h"
+#include "solver/solution.h"
+#include "solver/step_solver.h"
+
+namespace cleave {
+
+struct CombinationName {
+  std::string partitioner = "-";  // "-" and "-" for a solver that ignores parts
+  std::string refiner = "-";
+  std::string solver;
+
+  std::string label() const { return combination_label(partitioner, refiner, solver); }
+};
+
+// One solve and what the judge says of it.
+struct Outcome {
+  SolveStatus status =
+      SolveStatus::ok;  // the solver's, but not_converged or diverged where the judge disagrees
+  SolveSummary summary;
+  CoreTimes cores{};  // of the solve
+  Solution solution;
+  std::vector<int> part_of_body;  // (n) what `measure` split the bodies into; empty where parts are ignored
+  ResidualReport verdict;
+  bool finite = false;  // impulses and velocities are numbers
+
+  // There is a result to judge at all.
+  bool solved() const { return has_result(status); }
+  bool can_advance() const { return solved() && finite; }
+};
+
+class Combination {
+ public:
+  // Where the solver ignores parts partitioner and refiner are not made. context: what solvers that are ODE
+  // itself read the step from; must outlive the combination.
+  Combination(const Algorithm& partitioner, const Algorithm& refiner, const Algorithm& solver,
+              const RunOptions& options, const StepContext& context);
+
+  const CombinationName& name() const { return name_; }
+
+  // Who splits; of a solver that ignores parts both have no name.
+  const Algorithm& partitioner() const { return partitioner_; }
+  const Algorithm& refiner() const { return refiner_; }
+
+  // Names and parameters.
+  void set_names(StepRecord& row) const;
+
+  // Splits and solves once from the problem's warm start.
+  Outcome solve(const StepProblem& problem);
+
+  // Splits and solves options.repeats times from the problem's warm start and fills the row's columns of
+  // partition, solve, times and verdict. The stage times are those of the solve with the median time, so that
+  // they add up.
+  Outcome measure(const StepProblem& problem, StepRecord& row);
+
+  // `box-converged`: iterates the friction bounds of the problem with this combination's solver.
+  ConvergedBounds converge_bounds(StepProblem& problem);
+
+ private:
+  struct Repeat {
+    std::optional<Split> split;  // none for a solver that ignores parts
+    Outcome outcome;
+  };
+  std::optional<Split> split(const StepProblem& problem) const;
+  Repeat repeat(const StepProblem& problem);
+
+  CombinationName name_;
+  Algorithm partitioner_, refiner_, solver_named_;
+  int repeats_;
+  std::unique_ptr<StepSolver> solver_;
+  std::optional<Splitter> splitter_;
+};
+
+// All combinations of a run in the order of its rows: partitioner, then refiner, then solver; solvers that
+// ignore parts come last, once each.
+std::vector<Combination> make_combinations(const RunOptions& options, const StepContext& context);
+
+// The names of make_combinations, in its order.
+std::vector<CombinationName> combination_names(const RunOptions& options);
+
+// One problem measured with every combination. `turn` counts the problems measured before this one: the order
+// in which combinations run rotates with it, so that none always has the cold or the warm caches. rows: one a
+// combination, already holding the columns of the problem. Returns the outcomes in the order of combinations.
+std::vector<Outcome> measure_all(std::span<Combination> combinations, const StepProblem& problem, int turn,
+                                 std::span<StepRecord> rows);
+
+// The solver of --advance. Where it needs parts it gets those of the run's first partitioner and refiner.
+Combination make_advancing_combination(const RunOptions& options, const StepContext& context);
+
+}  // namespace cleave

@@ -1,0 +1,257 @@
+#include "harness/experiment/options.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "harness/base/hash.h"
+#include "harness/base/names.h"
+#include "harness/experiment/friction.h"
+#include "harness/world/ode_baselines.h"
+#include "solver/registry.h"
+
+namespace cleave {
+namespace {
+
+using Given = std::map<std::string, std::string>;
+constexpr const char* kOutIsRequired = "is required: the directory for steps.csv and manifest.json";
+
+[[noreturn]] void reject(const std::string& option, const std::string& text) {
+  throw std::invalid_argument("--" + option + ": " + text);
+}
+
+void require(const Given& given, const std::string& option, const std::string& text) {
+  if (!given.contains(option)) reject(option, text);
+}
+
+void exclude(const Given& given, const std::string& option, const std::string& text) {
+  if (given.contains(option)) reject(option, text);
+}
+
+RunOptions options_with(const CommonValues& common) {
+  RunOptions options;
+  options.common = common;
+  options.partitioners = read_list("partitioner", "paper", common);
+  options.refiners = read_list("refiner", "paper", common);
+  options.solvers = read_list("solver", "schur", common);
+  options.advance = read_named("advance", "exact", common);
+  return options;
+}
+
+// The values that are no options of the table: those of algorithms, checked, and the rest, which is the
+// scene's.
+CommonValues read_common(const Given& given) {
+  Given rest = given;
+  for (const OptionSpec& spec : run_option_specs()) rest.erase(spec.name);
+  for (const CommonParameter& common : common_parameters()) {
+    const auto found = rest.find(common.parameter.name);
+    if (found != rest.end())
+      found->second = checked_value(common.parameter, "--" + found->first, found->second);
+  }
+  return rest;
+}
+
+// Given options in the table's order, so that of two mistakes the same one is always reported first.
+void read_table(const Given& given, RunOptions& options) {
+  for (const OptionSpec& spec : run_option_specs()) {
+    const auto found = given.find(spec.name);
+    if (found != given.end()) spec.set(options, found->second);
+  }
+}
+
+bool is_common(const std::string& name) {
+  return std::ranges::any_of(common_parameters(),
+                             [&](const auto& row) { return row.parameter.name == name; });
+}
+
+// A scene's options, as far as they are not parameters of algorithms.
+Given scene_given(const CommonValues& common) {
+  Given rest;
+  for (const auto& [name, value] : common)
+    if (!is_common(name)) rest.emplace(name, value);
+  return rest;
+}
+
+void append(const std::vector<Algorithm>& more, std::vector<const Algorithm*>& to) {
+  for (const Algorithm& algorithm : more) to.push_back(&algorithm);
+}
+
+bool works_on_parts(const Algorithm* solver) {
+  return make_solver(*solver, 1, StepContext{})->uses_partition();
+}
+
+// A value that nothing in the run reads would do nothing.
+void check_owned(const RunOptions& options, bool with_world) {
+  std::vector<const Algorithm*> all;
+  append(options.solvers, all);
+  if (with_world && options.mode == RunMode::lockstep) all.push_back(&options.advance);
+  if (std::ranges::any_of(all, works_on_parts)) {
+    append(options.partitioners, all);
+    append(options.refiners, all);
+  }
+  if (with_world) all.push_back(&options.friction);
+  for (const auto& [name, value] : options.common) {
+    const auto reads = [&](const Algorithm* algorithm) { return algorithm->settings.has(name); };
+    if (is_common(name) && std::ranges::none_of(all, reads))
+      reject(name, "is a parameter of " + owners_of(name) + "; nothing in this run has it");
+  }
+}
+
+// A spring k with damper d per constraint, as ODE's manual maps it to erp and cfm.
+void read_stiffness(const Given& given, RunOptions& options) {
+  if (!given.contains("stiffness") && !given.contains("damping")) return;
+  require(given, "stiffness", "is required beside --damping");
+  require(given, "damping", "is required beside --stiffness");
+  exclude(given, "erp", "is set by --stiffness and --damping and cannot be given beside them");
+  exclude(given, "cfm", "is set by --stiffness and --damping and cannot be given beside them");
+  const double h_k = options.extract.h_s * options.stiffness_n_per_m;
+  options.extract.erp = h_k / (h_k + options.damping_n_s_per_m);
+  options.extract.cfm = 1 / (h_k + options.damping_n_s_per_m);
+  if (!std::isfinite(options.extract.erp) || !std::isfinite(options.extract.cfm))
+    reject("stiffness", number_text(options.stiffness_n_per_m) + " overflows with this --dt and --damping");
+}
+
+// The friction model and its parameters as extraction takes them.
+void read_friction(RunOptions& options) {
+  if (options.friction.name.empty()) options.friction = read_named("friction", "box", options.common);
+  const Settings& settings = options.friction.settings;
+  options.extract.friction = friction_model(options.friction.name);
+  if (settings.has("mu")) options.extract.mu = settings.number("mu");
+  if (settings.has("friction-force-n"))
+    options.extract.friction_force_n = settings.number("friction-force-n");
+  if (options.extract.friction != FrictionModel::constant) return;
+  std::vector<const Algorithm*> solvers{&options.advance};
+  append(options.solvers, solvers);
+  for (const Algorithm* solver : solvers)
+    if (solver->settings.has("ode-friction") && ode_friction(solver->settings) == OdeFriction::pyramid)
+      reject("ode-friction",
+             "pyramid follows normal forces, which --friction constant does not; allowed: limits");
+}
+
+// Replaces one or both halves of every solver name.
+void override_solvers(const Given& given, RunOptions& options) {
+  if (!given.contains("strategy") && !given.contains("kernel")) return;
+  if (given.contains("strategy")) check_name("--strategy", options.strategy, names_of(strategy_table()));
+  if (given.contains("kernel")) check_name("--kernel", options.kernel, names_of(kernel_table()));
+  std::vector<std::string> changed;
+  for (const Algorithm& solver : options.solvers) {
+    SolverHalves halves = solver_halves(solver.name);
+    if (halves.strategy.empty())
+      reject("solver",
+             "'" + solver.name + "' has neither strategy nor kernel; leave out --strategy and --kernel");
+    if (!options.strategy.empty()) halves.strategy = options.strategy;
+    if (!options.kernel.empty()) halves.kernel = options.kernel;
+    changed.push_back(halves.strategy + ":" + halves.kernel + solver.text.substr(solver.name.size()));
+  }
+  options.solvers = read_list("solver", joined(changed, ","), options.common);
+}
+
+// In the one form of writing; empty where there is none.
+std::string default_value(const Parameter& parameter) {
+  return parameter.default_value.empty() ? "" : checked_value(parameter, "", parameter.default_value);
+}
+
+OptionKind option_kind(const Parameter& parameter) {
+  switch (parameter.kind) {
+    case Parameter::Kind::integer:
+    case Parameter::Kind::number:
+      return OptionKind::number;
+    case Parameter::Kind::flag:
+      return OptionKind::flag;
+    default:
+      return OptionKind::text;
+  }
+}
+
+NamedAlgorithm named(const std::string& kind, const Algorithm& algorithm) {
+  NamedAlgorithm named{kind, algorithm.text, algorithm.name, {}, {}};
+  for (const Parameter& parameter : parameters_of(kind, algorithm.name)) {
+    if (parameter.kind == Parameter::Kind::path) continue;
+    named.parameters[parameter.name] = algorithm.settings.text(parameter.name);
+    named.defaults[parameter.name] = default_value(parameter);
+  }
+  if (kind != "solver") return named;
+  const SolverHalves halves = solver_halves(algorithm.name);
+  if (halves.strategy.empty()) return named;
+  named.parameters["strategy"] = named.defaults["strategy"] = halves.strategy;
+  named.parameters["kernel"] = named.defaults["kernel"] = halves.kernel;
+  return named;
+}
+
+}  // namespace
+
+RunOptions default_run_options() { return options_with({}); }
+
+RunOptions parse_run_options(const std::map<std::string, std::string>& given) {
+  require(given, "scene", "is required; choices: " + joined(names_of(scenes())));
+  require(given, "out", kOutIsRequired);
+  RunOptions options = options_with(read_common(given));
+  read_table(given, options);
+  check_scene_options(scene_row(options.scene), scene_given(options.common));
+  read_stiffness(given, options);
+  override_solvers(given, options);
+  read_friction(options);
+  check_owned(options, true);
+  if (options.mode == RunMode::separate) {
+    exclude(given, "advance",
+            "has a meaning only in lockstep: in --mode separate every combination advances its world");
+    exclude(given, "record-motion", "records one world; --mode separate has one per combination");
+  }
+  if (options.steps > 0 && options.measure_every > options.steps)
+    reject("measure-every", std::to_string(options.measure_every) + " measures none of --steps " +
+                                std::to_string(options.steps) + ", allowed: 1 to " +
+                                std::to_string(options.steps));
+  return options;
+}
+
+RunOptions parse_solve_options(const std::map<std::string, std::string>& given) {
+  require(given, "out", kOutIsRequired);
+  RunOptions options = options_with(read_common(given));
+  read_table(given, options);
+  override_solvers(given, options);
+  check_owned(options, false);
+  for (const AlgorithmEntry& ode : ode_baselines())
+    if (std::ranges::count(options.solvers, ode.name, &Algorithm::name) > 0)
+      reject("solver",
+             std::string(ode.name) + " is ODE's own and needs the world of a run; a problem file holds none");
+  return options;
+}
+
+std::vector<OptionValue> option_values(const RunOptions& options) {
+  const std::set<std::string> changes_no_row = {"threads", "out", "force", "record-motion"};
+  std::vector<OptionValue> values;
+  for (const OptionSpec& spec : run_option_specs())
+    values.push_back(
+        {spec.name, spec.kind, spec.get(options), spec.about, !changes_no_row.contains(spec.name)});
+  for (const auto& [parameter, owners, about, in_replay] : common_parameters()) {
+    const auto found = options.common.find(parameter.name);
+    values.push_back({parameter.name, option_kind(parameter),
+                      found != options.common.end() ? found->second : default_value(parameter), about});
+  }
+  if (!options.scene.name.empty())
+    for (const Parameter& parameter : scene_row(options.scene).parameters)
+      if (parameter.kind != Parameter::Kind::path)
+        values.push_back(
+            {parameter.name, OptionKind::text, options.scene.settings.text(parameter.name), About::problem});
+  if (!options.at.empty()) values.push_back({"at", OptionKind::text, joined_numbers(options.at)});
+  return values;
+}
+
+std::vector<NamedAlgorithm> named_algorithms(const RunOptions& options) {
+  std::vector<NamedAlgorithm> list;
+  for (const Algorithm& algorithm : options.partitioners) list.push_back(named("partitioner", algorithm));
+  for (const Algorithm& algorithm : options.refiners) list.push_back(named("refiner", algorithm));
+  for (const Algorithm& algorithm : options.solvers) list.push_back(named("solver", algorithm));
+  return list;
+}
+
+std::string run_id(std::span<const OptionValue> values) {
+  Fnv1a64 hash;
+  for (const OptionValue& value : values)
+    if (value.in_run_id) hash.add(value.name + "=" + value.text + "\n");
+  return hex(hash.value());
+}
+
+}  // namespace cleave

@@ -1,0 +1,98 @@
+#include "harness/experiment/step_columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "harness/base/hash.h"
+#include "harness/base/names.h"
+#include "harness/experiment/friction.h"
+#include "harness/experiment/problem_graph.h"
+#include "solver/problem_hash.h"
+
+namespace cleave {
+namespace {
+
+// As it stands on the command line and in the manifest.
+std::string option_text(const RunOptions& options, std::string_view name) {
+  for (const OptionSpec& spec : run_option_specs())
+    if (spec.name == name) return spec.get(options);
+  throw std::logic_error("no option of this name: " + std::string(name));
+}
+
+std::string joined_scene_options(const RunOptions& options) {
+  std::vector<std::string> pairs;
+  for (const Parameter& parameter : scene_row(options.scene).parameters)
+    if (parameter.kind != Parameter::Kind::path)
+      pairs.push_back(parameter.name + "=" + options.scene.settings.text(parameter.name));
+  std::ranges::sort(pairs);
+  return pairs.empty() ? "-" : joined(pairs, ";");
+}
+
+void set_physics(const RunOptions& options, StepRecord& row) {
+  row.dt_s = options.extract.h_s;
+  row.cfm = options.extract.cfm;
+  row.erp = options.extract.erp;
+  row.gravity_m_per_s2 = options.gravity_m_per_s2;
+  row.match_tolerance = options.match_tolerance;
+  row.contact_cap = options.contact_cap;
+}
+
+int rows_of_kind(const StepProblem& problem, RowKind kind) {
+  return static_cast<int>(std::ranges::count(problem.row_kind, kind));
+}
+
+}  // namespace
+
+StepRecord solve_columns(const RunOptions& options) {
+  StepRecord row;
+  row.threads = options.threads;
+  row.skip_small_islands = options.skip_small_islands;
+  return row;
+}
+
+StepRecord run_columns(const RunOptions& options) {
+  StepRecord row = solve_columns(options);
+  row.run_id = run_id(options);
+  row.scene = options.scene.text;
+  row.seed = options.seed;
+  row.friction = options.friction.text;
+  row.add_parameters(options.friction.settings);
+  set_physics(options, row);
+  row.cold = 0;
+  row.mode = option_text(options, "mode");
+  if (options.mode == RunMode::lockstep) row.advance = options.advance.text;
+  row.steps = options.steps;
+  row.scene_options = joined_scene_options(options);
+  return row;
+}
+
+void set_problem_columns(const StepProblem& problem, StepRecord& row) {
+  row.bodies = problem.body_count();
+  row.rows = problem.row_count();
+  row.rows_bilateral = rows_of_kind(problem, RowKind::bilateral);
+  row.rows_normal = rows_of_kind(problem, RowKind::normal);
+  row.rows_friction = rows_of_kind(problem, RowKind::friction);
+  row.contacts = row.rows_normal;  // a contact point has one normal row
+  row.islands = count_islands(body_graph_of(problem));
+  row.problem_hash = hex(problem_hash(problem));
+}
+
+double deepest_m(std::span<const ContactPoint> contacts) {
+  double deepest = 0;
+  for (const ContactPoint& contact : contacts) deepest = std::max(deepest, contact.depth_m);
+  return deepest;
+}
+
+double largest_difference(std::span<const double> a, std::span<const double> b) {
+  if (a.size() != b.size()) return kUnmeasured;
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double difference = std::abs(a[i] - b[i]);
+    if (!(difference <= largest)) largest = difference;
+    if (std::isnan(largest)) return largest;
+  }
+  return largest;
+}
+
+}  // namespace cleave

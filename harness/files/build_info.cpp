@@ -1,0 +1,124 @@
+#include "harness/files/build_info.h"
+
+#include <camd.h>
+#include <hdf5.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <unistd.h>
+#include <CLI/Version.hpp>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+#include <limits>
+
+#include "harness/files/dense_speed.h"
+
+// Written by build_info.cmake; a build without it says "unknown".
+#if __has_include("cleave_build_info.h")
+#include "cleave_build_info.h"
+#else
+#define CLEAVE_VERSION "unknown"
+#define CLEAVE_GIT_HASH "unknown"
+#define CLEAVE_GIT_DIRTY "unknown"
+#define CLEAVE_COMPILE_FLAGS "unknown"
+#define CLEAVE_BUILD_TYPE "unknown"
+#endif
+
+#ifdef __clang__
+#define CLEAVE_COMPILER __VERSION__  // begins with "Clang"
+#else
+#define CLEAVE_COMPILER "GCC " __VERSION__
+#endif
+
+namespace cleave {
+namespace {
+
+std::string cpu_model() {
+  std::ifstream cpuinfo("/proc/cpuinfo");
+  for (std::string line; std::getline(cpuinfo, line);) {
+    const std::size_t colon = line.find(": ");
+    if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
+  }
+  return "unknown";
+}
+
+std::string governor() {
+  std::ifstream file("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  std::string name;
+  return file >> name ? name : "unknown";
+}
+
+std::vector<std::pair<std::string, std::string>> omp_environment() {
+  std::vector<std::pair<std::string, std::string>> variables;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string text = *entry;
+    const std::size_t equals = text.find('=');
+    if (text.starts_with("OMP_") && equals != std::string::npos)
+      variables.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+  }
+  std::ranges::sort(variables);
+  return variables;
+}
+
+std::string dotted(int major, int minor, int patch) {
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
+}
+
+}  // namespace
+
+BuildInfo build_info() {
+  return {CLEAVE_VERSION,  CLEAVE_GIT_HASH,      CLEAVE_GIT_DIRTY,
+          CLEAVE_COMPILER, CLEAVE_COMPILE_FLAGS, CLEAVE_BUILD_TYPE};
+}
+
+std::string version_text(const BuildInfo& build) {
+  const std::string state =
+      build.git_dirty == "true" ? "dirty" : (build.git_dirty == "false" ? "clean" : "unknown");
+  return "cleave " + build.version + " (commit " + build.git_hash + ", " + state + ") " + build.compiler;
+}
+
+std::vector<std::pair<std::string, std::string>> library_versions() {
+  unsigned hdf5[3];
+  H5get_libversion(&hdf5[0], &hdf5[1], &hdf5[2]);
+  return {
+      {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+      {"suitesparse", dotted(SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION, SUITESPARSE_SUBSUB_VERSION)},
+      {"camd", dotted(CAMD_MAIN_VERSION, CAMD_SUB_VERSION, CAMD_SUBSUB_VERSION)},
+      {"hdf5", dotted(static_cast<int>(hdf5[0]), static_cast<int>(hdf5[1]), static_cast<int>(hdf5[2]))},
+      {"openmp", std::to_string(_OPENMP)},
+      {"cli11", CLI11_VERSION}};
+}
+
+std::array<double, 3> load_average() {
+  std::array<double, 3> load{};
+  if (::getloadavg(load.data(), 3) != 3) load.fill(std::numeric_limits<double>::quiet_NaN());
+  return load;
+}
+
+MachineInfo machine_info() {
+  MachineInfo info;
+  char host[256] = "";
+  info.host = ::gethostname(host, sizeof host - 1) == 0 ? host : "unknown";
+  info.cpu_model = cpu_model();
+  info.cores = omp_get_num_procs();
+  info.governor = governor();
+  info.load_average = load_average();
+  info.omp_threads = omp_get_max_threads();
+  info.omp_environment = omp_environment();
+  info.dense_kernel = dense_kernel();
+  info.dense_gflop_per_s = dense_gflop_per_s();
+  return info;
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  ::gmtime_r(&now, &utc);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text;
+}
+
+}  // namespace cleave

@@ -1,0 +1,84 @@
+// A recorded step problem in one HDF5 file (schema "cleave-problem-1"): all that a solver needs to solve the
+// step again elsewhere, where the bodies were, and solutions that were found. n bodies, m constraint rows.
+//
+// Root attributes: schema, scene, step, seed, h_s (step in s), friction_model, erp, cfm.
+// Datasets, little endian:
+//     mass (n,6,6)   free_velocity (n,6)   row_body (m,2) int32, -1 = static   jacobian (m,12)   rhs (m)
+//     compliance (m) lower (m) upper (m), infinite allowed   row_kind (m) uint8, 0 bilateral 1 normal 2
+//     friction friction_row (m) int32, the normal row or -1           friction_coefficient (m) row_constraint
+//     (m) int32   contact_point (m,3)         warm_impulse (m)
+// as in solver/step_problem.h, 64-bit floats where no type is given, and
+//     position (n,3) m   orientation (n,4) quaternion w x y z   body_group (n) int32, optional
+//     shape              optional group for drawing, see ProblemShapes
+// Solutions, any number of each, by label (see combination_label):
+//     solution/LABEL   impulse (m)   velocity (n,6) = v0 + M^-1 J^T impulse
+//                      attributes solver, strategy, kernel, partitioner, refiner, residual_m_per_s
+//     partition/LABEL  part_of_body (n) int32
+//                      attributes partitioner, refiner and every parameter that shaped it (max_bodies,
+//                      tau_mix, edge_weight, ...), the partitioner's as they are called, the refiner's where
+//                      the partitioner has another value as refiner_edge_weight, and skip_small_islands
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/base/combination_label.h"
+#include "harness/base/parameter.h"
+#include "harness/base/shapes.h"
+#include "solver/step_problem.h"
+
+namespace cleave {
+
+struct StoredSolution {
+  std::string solver, strategy, kernel, partitioner, refiner;  // partitioner and refiner "-": ignores parts
+  double residual_m_per_s = 0;                                 // by the judge; NaN of a solve that diverged
+  std::vector<double> impulse;                                 // (m) N s
+  std::vector<double> velocity;                                // (n, 6)
+};
+
+// A parameter as an attribute: max_bodies, 25.
+struct StoredParameter {
+  std::string name;  // of the attribute
+  Parameter::Kind kind;
+  std::string text;
+  bool operator==(const StoredParameter&) const = default;
+};
+
+struct StoredPartition {
+  std::string partitioner, refiner;         // as named in the run
+  std::vector<StoredParameter> parameters;  // what shaped it; see problem_file.h's list of attributes
+  std::vector<int> part_of_body;            // (n)
+};
+
+struct ProblemFile {
+  StepProblem problem;
+  std::string scene;
+  int step = 0;
+  std::uint64_t seed = 0;
+  std::string friction_model;       // a name of friction_models()
+  double erp = 0, cfm = 0;          // of the world; joints may have their own
+  std::vector<double> position;     // (n, 3)
+  std::vector<double> orientation;  // (n, 4)
+  std::optional<std::vector<int>> body_group;
+  std::optional<ProblemShapes> shapes;
+  std::map<std::string, StoredSolution> solutions;    // by label
+  std::map<std::string, StoredPartition> partitions;  // by label
+};
+
+// Throws std::invalid_argument with one line that names the file, what is wrong in it (dataset, index, value)
+// and what is allowed: not a readable HDF5 file, wrong schema, missing parts, wrong types or shapes, values
+// that are no problem (find_problem_error). Impulses, velocities and part ids are checked for type and shape
+// only: whether they are right is for `cleave verify` to say.
+ProblemFile read_problem_file(const std::filesystem::path& path);
+
+// Writes under a temporary name in the same directory (path + ".part") that is then renamed, so that whatever
+// ends the program, a file of this name is whole. Throws std::invalid_argument for a problem that
+// read_problem_file would refuse, and std::runtime_error naming the file and the reason when it cannot be
+// written.
+void write_problem_file(const std::filesystem::path& path, const ProblemFile& file);
+
+}  // namespace cleave

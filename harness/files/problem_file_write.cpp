@@ -1,0 +1,85 @@
+#include <stdexcept>
+
+#include "harness/base/numbers.h"
+#include "harness/files/hdf5_writer.h"
+#include "harness/files/problem_file.h"
+#include "harness/files/problem_file_fields.h"
+
+namespace cleave {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write_solution(const Hdf5Writer& group, const StoredSolution& solution, std::size_t n) {
+  visit_solution_attributes(solution,
+                            [&](const char* name, const auto& value) { group.attribute(name, value); });
+  group.array("impulse", {solution.impulse.size()}, solution.impulse);
+  group.array("velocity", {n, 6}, solution.velocity);
+}
+
+// With the type of its kind, so that any reader gets a number for a number.
+void write_parameter(const Hdf5Writer& group, const StoredParameter& parameter) {
+  switch (parameter.kind) {
+    case Parameter::Kind::integer:
+      return group.attribute(parameter.name, parse_integer(parameter.name, parameter.text, {}));
+    case Parameter::Kind::number:
+      return group.attribute(parameter.name, parse_number(parameter.name, parameter.text, {}));
+    case Parameter::Kind::flag:
+      return group.attribute(parameter.name, parameter.text == "true");
+    default:
+      return group.attribute(parameter.name, parameter.text);
+  }
+}
+
+void write_partition(const Hdf5Writer& group, const StoredPartition& partition) {
+  visit_partition_attributes(partition,
+                             [&](const char* name, const auto& value) { group.attribute(name, value); });
+  for (const StoredParameter& parameter : partition.parameters) write_parameter(group, parameter);
+  group.array("part_of_body", {partition.part_of_body.size()}, partition.part_of_body);
+}
+
+void write_contents(const Hdf5Writer& writer, const ProblemFile& file) {
+  const std::size_t n = file.problem.body_count(), m = file.problem.row_count();
+  const auto array = [](const Hdf5Writer& group) {
+    return [&group](const char* name, const auto& values, const Hdf5Shape& shape) {
+      group.array(name, shape, values);
+    };
+  };
+  writer.attribute("schema", kProblemSchema);
+  visit_attributes(file, [&](const char* name, const auto& value) { writer.attribute(name, value); });
+  visit_arrays(file, n, m, array(writer));
+  if (file.body_group) writer.array("body_group", {n}, *file.body_group);
+  if (file.shapes) {
+    const Hdf5Writer group = writer.group("shape");
+    visit_shape_arrays(*file.shapes, file.shapes->geom_body.size(), file.shapes->convex_points.size() / 3,
+                       array(group));
+  }
+  if (!file.solutions.empty()) {
+    const Hdf5Writer group = writer.group("solution");
+    for (const auto& [label, solution] : file.solutions) write_solution(group.group(label), solution, n);
+  }
+  if (!file.partitions.empty()) {
+    const Hdf5Writer group = writer.group("partition");
+    for (const auto& [label, partition] : file.partitions) write_partition(group.group(label), partition);
+  }
+}
+
+}  // namespace
+
+void write_problem_file(const fs::path& path, const ProblemFile& file) {
+  const std::string error = find_problem_error(file.problem);
+  if (!error.empty()) throw std::invalid_argument(path.string() + ": not written: " + error);
+  const fs::path temporary = path.string() + ".part";
+  try {
+    Hdf5Writer writer(temporary);
+    write_contents(writer, file);
+    writer.close();
+    fs::rename(temporary, path);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    throw;
+  }
+}
+
+}  // namespace cleave

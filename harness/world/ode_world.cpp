@@ -1,0 +1,265 @@
+#include "harness/world/ode_world.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "harness/base/hash.h"
+
+namespace cleave {
+namespace {
+
+// ODE's handlers take no user data, so what they collect is global.
+int message_count = 0;
+std::string first_message;
+
+std::string format(const char* text, std::va_list arguments) {
+  char line[512];
+  std::vsnprintf(line, sizeof line, text, arguments);
+  return line;
+}
+
+void count_message(int, const char* text, std::va_list arguments) {
+  if (message_count++ == 0) first_message = format(text, arguments);
+}
+
+// ODE ends the process when this returns.
+[[noreturn]] void throw_error(int, const char* text, std::va_list arguments) {
+  throw std::runtime_error("ODE: " + format(text, arguments));
+}
+
+void initialise_ode() {
+  static const bool done = [] {
+    dSetMessageHandler(count_message);
+    dSetErrorHandler(throw_error);
+    dSetDebugHandler(throw_error);
+    return dInitODE2(0) != 0 && dAllocateODEDataForThread(dAllocateMaskAll) != 0;
+  }();
+  if (!done) throw std::runtime_error("ODE could not be initialised");
+}
+
+// Indices are kept in ODE's user data shifted by one, so that geometry nobody entered shows as -1.
+void* to_data(int index) { return reinterpret_cast<void*>(static_cast<std::intptr_t>(index) + 1); }
+int to_index(void* data) { return static_cast<int>(reinterpret_cast<std::intptr_t>(data) - 1); }
+
+int index_of(dGeomID geom) { return to_index(dGeomGetData(geom)); }
+int index_of(dBodyID body) { return body == nullptr ? -1 : to_index(dBodyGetData(body)); }
+
+struct GeomPair {
+  int body_a, body_b;  // as in ContactPoint
+  int lower_geom, other_geom;
+  auto key() const { return std::tie(body_a, body_b, lower_geom, other_geom); }
+  bool operator<(const GeomPair& other) const { return key() < other.key(); }
+};
+
+void collect_pair(void* pairs, dGeomID first, dGeomID second) {
+  const dBodyID first_body = dGeomGetBody(first), second_body = dGeomGetBody(second);
+  if (first_body == second_body) return;  // parts of one body, or both static
+  const bool both_dynamic = first_body != nullptr && second_body != nullptr;
+  if (both_dynamic && dAreConnectedExcluding(first_body, second_body, dJointTypeContact)) return;
+  const auto [low_body, high_body] = std::minmax({index_of(first_body), index_of(second_body)});
+  const auto [low_geom, high_geom] = std::minmax({index_of(first), index_of(second)});
+  assert(low_geom >= 0);
+  const GeomPair pair = low_body < 0 ? GeomPair{high_body, -1, low_geom, high_geom}
+                                     : GeomPair{low_body, high_body, low_geom, high_geom};
+  static_cast<std::vector<GeomPair>*>(pairs)->push_back(pair);
+}
+
+ContactPoint make_contact(const GeomPair& pair, bool lower_geom_is_a, const dContactGeom& found) {
+  ContactPoint contact{.body_a = pair.body_a, .body_b = pair.body_b, .depth_m = found.depth};
+  contact.geom_a = lower_geom_is_a ? pair.lower_geom : pair.other_geom;
+  contact.geom_b = lower_geom_is_a ? pair.other_geom : pair.lower_geom;
+  bool finite = std::isfinite(found.depth);
+  for (int k = 0; k < 3; ++k) {
+    contact.position_m[k] = found.pos[k];
+    contact.normal[k] = lower_geom_is_a ? found.normal[k] : -found.normal[k];
+    finite = finite && std::isfinite(found.pos[k]) && std::isfinite(found.normal[k]);
+  }
+  if (!finite)
+    throw std::runtime_error("contact between geoms " + std::to_string(pair.lower_geom) + " and " +
+                             std::to_string(pair.other_geom) + " is not finite");
+  return contact;
+}
+
+// exp(h omega) q, both as quaternions; sin(x)/x by its series where the quotient would lose digits.
+void rotate(dQuaternion q, const double* omega, double h_s) {
+  const double half = std::sqrt(omega[0] * omega[0] + omega[1] * omega[1] + omega[2] * omega[2]) * h_s / 2;
+  const double scale = h_s / 2 * (half < 1e-4 ? 1 - half * half / 6 : std::sin(half) / half);
+  const dQuaternion turn{std::cos(half), scale * omega[0], scale * omega[1], scale * omega[2]};
+  const dQuaternion before{q[0], q[1], q[2], q[3]};
+  dQMultiply0(q, turn, before);
+}
+
+// What acts on a body, which scenes may change while they run.
+void copy_forces(dBodyID from, dBodyID to) {
+  const dReal *force = dBodyGetForce(from), *torque = dBodyGetTorque(from);
+  dBodySetForce(to, force[0], force[1], force[2]);
+  dBodySetTorque(to, torque[0], torque[1], torque[2]);
+  dBodySetGravityMode(to, dBodyGetGravityMode(from));
+  dBodySetGyroscopicMode(to, dBodyGetGyroscopicMode(from));
+}
+
+}  // namespace
+
+OdeWorld::OdeWorld(const SceneEntry& scene, const Settings& settings, std::uint64_t seed,
+                   double gravity_m_per_s2, bool gyroscopic)
+    : OdeWorld({scene, settings, seed}, gravity_m_per_s2, gyroscopic, std::nullopt) {}
+
+OdeWorld::OdeWorld(Recipe recipe, double gravity_m_per_s2, bool gyroscopic, std::optional<ErpCfm> preset)
+    : recipe_(std::move(recipe)), scene_(recipe_.scene.make()), gravity_m_per_s2_(gravity_m_per_s2) {
+  const std::uint64_t seed = recipe_.seed;
+  initialise_ode();
+  dRandSetSeed(static_cast<std::uint32_t>(seed ^ (seed >> 32)));
+  world_.reset(dWorldCreate());
+  // Half the time of a hash space on our scenes, with the same contacts.
+  space_.reset(dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ));
+  dWorldSetGravity(world_.get(), 0, 0, -gravity_m_per_s2);
+  dWorldSetAutoDisableFlag(world_.get(), 0);
+  if (preset) {
+    dWorldSetERP(world_.get(), preset->erp);
+    dWorldSetCFM(world_.get(), preset->cfm);
+  }
+  content_ = scene_->build(world_.get(), space_.get(), recipe_.settings, seed);
+  assert(dSpaceGetNumGeoms(space_.get()) == static_cast<int>(content_.geoms.size()));
+  for (int i = 0; i < body_count(); ++i) {
+    dBodySetData(content_.bodies[i], to_data(i));
+    dBodySetGyroscopicMode(content_.bodies[i], gyroscopic);
+  }
+  for (int i = 0; i < static_cast<int>(content_.geoms.size()); ++i) {
+    if (dGeomGetClass(content_.geoms[i]) == dTriMeshClass)
+      throw std::invalid_argument(std::string("scene '") + recipe_.scene.name +
+                                  "': triangle meshes are not supported");
+    dGeomSetData(content_.geoms[i], to_data(i));
+  }
+}
+
+std::unique_ptr<OdeWorld> OdeWorld::rebuilt(double erp, double cfm) const {
+  std::unique_ptr<OdeWorld> copy(new OdeWorld(recipe_, gravity_m_per_s2_, true, ErpCfm{erp, cfm}));
+  if (dWorldGetERP(copy->world()) != erp || dWorldGetCFM(copy->world()) != cfm)
+    throw std::runtime_error(std::string("scene '") + recipe_.scene.name +
+                             "' sets ERP or CFM by itself; ODE's own solvers take those of the step");
+  for (int i = 0; i < body_count(); ++i) {
+    copy->set_state(i, state(i));
+    copy_forces(content_.bodies[i], copy->content_.bodies[i]);
+  }
+  for (std::size_t j = 0; j < content_.joints.size(); ++j)
+    (dJointIsEnabled(content_.joints[j]) ? dJointEnable : dJointDisable)(copy->content_.joints[j]);
+  return copy;
+}
+
+std::vector<ContactPoint> OdeWorld::collide(int contact_cap, int* cap_hits) {
+  if (contact_cap < 1 || contact_cap > 65535)
+    throw std::invalid_argument("contact cap: " + std::to_string(contact_cap) + " is not in [1, 65535]");
+  std::vector<GeomPair> pairs;
+  dSpaceCollide(space_.get(), &pairs, collect_pair);
+  std::sort(pairs.begin(), pairs.end());
+
+  std::vector<ContactPoint> contacts;
+  std::vector<dContactGeom> found(contact_cap);
+  int hits = 0;
+  for (const GeomPair& pair : pairs) {
+    const dGeomID lower = content_.geoms[pair.lower_geom], other = content_.geoms[pair.other_geom];
+    const int count = dCollide(lower, other, contact_cap, found.data(), sizeof(dContactGeom));
+    const bool lower_geom_is_a = index_of(dGeomGetBody(lower)) == pair.body_a;
+    for (int i = 0; i < count; ++i) contacts.push_back(make_contact(pair, lower_geom_is_a, found[i]));
+    hits += count == contact_cap;
+  }
+  if (cap_hits != nullptr) *cap_hits = hits;
+  return contacts;
+}
+
+void OdeWorld::advance(std::span<const double> velocity, double h_s) {
+  assert(velocity.size() == 6 * content_.bodies.size());
+  for (std::size_t k = 0; k < velocity.size(); ++k)
+    if (!std::isfinite(velocity[k]))
+      throw std::runtime_error("velocity of body " + std::to_string(k / 6) + " is not finite");
+  for (int i = 0; i < body_count(); ++i) {
+    const double* v = velocity.data() + 6 * i;
+    const dBodyID body = content_.bodies[i];
+    const dReal* x = dBodyGetPosition(body);
+    const dReal* present = dBodyGetQuaternion(body);
+    dQuaternion q{present[0], present[1], present[2], present[3]};
+    rotate(q, v + 3, h_s);
+    dBodySetPosition(body, x[0] + h_s * v[0], x[1] + h_s * v[1], x[2] + h_s * v[2]);
+    dBodySetQuaternion(body, q);
+    dBodySetLinearVel(body, v[0], v[1], v[2]);
+    dBodySetAngularVel(body, v[3], v[4], v[5]);
+  }
+}
+
+BodyState OdeWorld::state(int body) const {
+  const dBodyID b = content_.bodies[body];
+  const dReal *x = dBodyGetPosition(b), *q = dBodyGetQuaternion(b);
+  const dReal *v = dBodyGetLinearVel(b), *w = dBodyGetAngularVel(b);
+  return {{x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}, {v[0], v[1], v[2], w[0], w[1], w[2]}};
+}
+
+void OdeWorld::set_state(int body, const BodyState& state) {
+  const dBodyID b = content_.bodies[body];
+  const auto& v = state.velocity;
+  dBodySetPosition(b, state.position_m[0], state.position_m[1], state.position_m[2]);
+  dBodySetQuaternion(b, state.orientation.data());
+  dBodySetLinearVel(b, v[0], v[1], v[2]);
+  dBodySetAngularVel(b, v[3], v[4], v[5]);
+}
+
+std::uint64_t OdeWorld::state_hash() const {
+  Fnv1a64 hash;
+  for (int i = 0; i < body_count(); ++i) {
+    const BodyState s = state(i);
+    hash.add(std::span<const double>(s.position_m));
+    hash.add(std::span<const double>(s.orientation));
+    hash.add(std::span<const double>(s.velocity));
+  }
+  return hash.value();
+}
+
+double OdeWorld::last_body_z_m() const {
+  return content_.bodies.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                 : dBodyGetPosition(content_.bodies.back())[2];
+}
+
+double OdeWorld::potential_energy_j() const {
+  double sum = 0;
+  for (const dBodyID body : content_.bodies) {
+    dMass mass;
+    dBodyGetMass(body, &mass);
+    sum += mass.mass * gravity_m_per_s2_ * dBodyGetPosition(body)[2];
+  }
+  return sum;
+}
+
+double OdeWorld::kinetic_energy_j() const {
+  double sum = 0;
+  for (const dBodyID body : content_.bodies) {
+    dMass mass;
+    dBodyGetMass(body, &mass);
+    const dReal *v = dBodyGetLinearVel(body), *w = dBodyGetAngularVel(body);
+    // The inertia is constant in the body's frame, so omega goes there.
+    dVector3 local_w, spin;
+    dMultiply1_331(local_w, dBodyGetRotation(body), w);
+    dMultiply0_331(spin, mass.I, local_w);
+    sum += 0.5 * (mass.mass * dCalcVectorDot3(v, v) + dCalcVectorDot3(local_w, spin));
+  }
+  return sum;
+}
+
+int OdeWorld::take_message_count(std::string* first_text) {
+  const int count = message_count;
+  if (count > 0 && first_text != nullptr) *first_text = first_message;
+  message_count = 0;
+  return count;
+}
+
+int OdeWorld::body_index(dBodyID body) const { return index_of(body); }
+int OdeWorld::geom_index(dGeomID geom) const { return index_of(geom); }
+
+std::string ode_version() { return std::string(dODE_VERSION) + " " + dGetConfiguration(); }
+
+}  // namespace cleave

@@ -1,0 +1,99 @@
+#include "partition/parameters.h"
+
+#include <limits>
+
+namespace cleave::parameters {
+namespace {
+
+using Kind = Parameter::Kind;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr const char* kGrowing = "Liu & Andrews 2022, section 3.1";
+constexpr const char* kRefining = "Liu & Andrews 2022, section 3.2";
+
+}  // namespace
+
+const Parameter& max_bodies() {
+  static const Parameter parameter{.name = "max-bodies",
+                                   .kind = Kind::integer,
+                                   .default_value = "25",
+                                   .range = {1, kInfinity},
+                                   .help = "n_max: most bodies of a part while growing",
+                                   .source = kGrowing};
+  return parameter;
+}
+
+const Parameter& degree() {
+  static const Parameter parameter{.name = "degree",
+                                   .kind = Kind::word,
+                                   .default_value = "bodies",
+                                   .words = {"bodies", "constraints"},
+                                   .help = "what the degree of a body counts",
+                                   .source = kGrowing};
+  return parameter;
+}
+
+// The paper leaves the scope open; among what is left cuts fewer rows with mindp and mix
+// (partition/README.md).
+const Parameter& degree_scope() {
+  static const Parameter parameter{
+      .name = "degree-scope",
+      .kind = Kind::word,
+      .default_value = "left",
+      .words = {"whole", "left"},
+      .help = "count degrees in the whole graph or among bodies not yet in a part",
+      .source = "partition/README.md"};
+  return parameter;
+}
+
+const Parameter& edge_weight() {
+  static const Parameter parameter{.name = "edge-weight",
+                                   .kind = Kind::word,
+                                   .default_value = "rows",
+                                   .words = {"pairs", "constraints", "rows"},
+                                   .help = "unit of edge weights in mix, kl and fm",
+                                   .source = "partition/README.md"};
+  return parameter;
+}
+
+const Parameter& as_printed() {
+  static const Parameter parameter{.name = "as-printed",
+                                   .kind = Kind::flag,
+                                   .default_value = "false",
+                                   .help =
+                                       "the paper to the letter: pairs in kl and fm, constraints in mix and "
+                                       "maxdp, no bound on a part in fm",
+                                   .source = "Liu & Andrews 2022, section 3"};
+  return parameter;
+}
+
+const Parameter& tau_mr() {
+  static const Parameter parameter{.name = "tau-mr",
+                                   .kind = Kind::number,
+                                   .default_value = "10",
+                                   .range = {1, kInfinity, true},
+                                   .help = "mr joins bodies of mass ratio below this",
+                                   .source = kGrowing};
+  return parameter;
+}
+
+const Parameter& tau_mix() {
+  static const Parameter parameter{.name = "tau-mix",
+                                   .kind = Kind::number,
+                                   .default_value = "0.5",
+                                   .range = {0, 1},
+                                   .help = "mix grows this share of a part by least degree",
+                                   .source = "Liu & Andrews 2022, Algorithm 1"};
+  return parameter;
+}
+
+const Parameter& max_growth() {
+  static const Parameter parameter{.name = "max-growth",
+                                   .kind = Kind::number,
+                                   .default_value = "0.2",
+                                   .range = {0, kInfinity},
+                                   .help = "fm lets a part grow to (1 + this) max-bodies",
+                                   .source = kRefining};
+  return parameter;
+}
+
+}  // namespace cleave::parameters

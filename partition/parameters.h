@@ -1,0 +1,28 @@
+// Parameters that several partitioners and refiners share, declared once, and what they mean. A parameter of
+// one algorithm alone stands in its registry row.
+#pragma once
+
+#include "harness/base/parameter.h"
+#include "partition/body_graph.h"
+
+namespace cleave {
+
+// What a body's degree counts (degree): distinct adjacent bodies, or joints + contact points.
+enum class DegreeUnit { bodies, constraints };
+// Where it is counted (degree-scope): in the whole graph, or among the bodies that are not yet in a part (the
+// part being grown is one).
+enum class DegreeScope { whole, left };
+
+namespace parameters {
+
+const Parameter& max_bodies();    // n_max: most bodies of a part while growing
+const Parameter& degree();        // DegreeUnit
+const Parameter& degree_scope();  // DegreeScope
+const Parameter& edge_weight();   // EdgeWeight
+const Parameter& as_printed();    // the paper to the letter
+const Parameter& tau_mr();
+const Parameter& tau_mix();
+const Parameter& max_growth();
+
+}  // namespace parameters
+}  // namespace cleave

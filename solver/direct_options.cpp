@@ -1,0 +1,62 @@
+#include "solver/direct_options.h"
+
+#include <limits>
+
+namespace cleave {
+namespace parameters {
+namespace {
+
+using Kind = Parameter::Kind;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+const Parameter& max_iterations() {
+  static const Parameter parameter{.name = "max-iterations",
+                                   .kind = Kind::integer,
+                                   .default_value = "100",
+                                   .range = {1, kInfinity},
+                                   .help = "iterations after which a strategy gives up"};
+  return parameter;
+}
+
+const Parameter& predictor_sweeps() {
+  static const Parameter parameter{.name = "predictor-sweeps",
+                                   .kind = Kind::integer,
+                                   .default_value = "40",
+                                   .range = {0, kInfinity},
+                                   .help = "Gauss-Seidel sweeps that the strategy pivot starts from",
+                                   .source = "solver/strategies/pivot.cpp"};
+  return parameter;
+}
+
+const Parameter& reuse_analysis() {
+  static const Parameter parameter{
+      .name = "reuse-analysis",
+      .kind = Kind::flag,
+      .default_value = "false",
+      .help = "keep a solver's symbolic analysis while parts stay and contacts fit its pattern"};
+  return parameter;
+}
+
+const Parameter& sweeps() {
+  static const Parameter parameter{.name = "sweeps",
+                                   .kind = Kind::integer,
+                                   .default_value = "5",
+                                   .range = {0, kInfinity},
+                                   .help = "Gauss-Seidel sweeps of pgs",
+                                   .source = "Catto 2005"};
+  return parameter;
+}
+
+}  // namespace parameters
+
+DirectOptions read_direct_options(const SolveOptions& options, const Settings& settings) {
+  DirectOptions read{options};
+  if (settings.has("max-iterations")) read.max_iterations = settings.integer("max-iterations");
+  if (settings.has("predictor-sweeps")) read.predictor_sweeps = settings.integer("predictor-sweeps");
+  if (settings.has("reuse-analysis")) read.reuse_analysis = settings.flag("reuse-analysis");
+  return read;
+}
+
+}  // namespace cleave

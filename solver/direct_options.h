@@ -1,0 +1,27 @@
+// What the direct solvers (strategy:kernel) are told: the options of every solver and the parameters that
+// strategies and kernels declare in the registry.
+#pragma once
+
+#include "harness/base/parameter.h"
+#include "solver/step_solver.h"
+
+namespace cleave {
+
+struct DirectOptions : SolveOptions {
+  int max_iterations = 100;     // of every strategy that runs; a miss is a status, not a result
+  int predictor_sweeps = 40;    // Gauss-Seidel sweeps that pivot starts from
+  bool reuse_analysis = false;  // keep the symbolic analysis while parts stay and rows fit its pattern
+};
+
+// Parameters that the settings do not have keep their defaults.
+DirectOptions read_direct_options(const SolveOptions& options, const Settings& settings);
+
+namespace parameters {
+
+const Parameter& max_iterations();
+const Parameter& predictor_sweeps();
+const Parameter& reuse_analysis();
+const Parameter& sweeps();
+
+}  // namespace parameters
+}  // namespace cleave
