@@ -21,6 +21,7 @@ USED_BY = {
     "libopenblas-dev": ("tests/CMakeLists.txt", "openblas"),
     "libcli11-dev": ("CMakeLists.txt", "CLI11"),
     "libhdf5-dev": ("CMakeLists.txt", "HDF5"),
+    "libtomlplusplus-dev": ("CMakeLists.txt", "toml++"),
     "libgtest-dev": ("tests/CMakeLists.txt", "GTest"),
     "libbenchmark-dev": ("tests/CMakeLists.txt", "benchmark"),
     "libmetis-dev": ("tests/CMakeLists.txt", "metis"),
