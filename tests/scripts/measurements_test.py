@@ -9,9 +9,9 @@ import unittest.mock
 from stand_in import StandInCase
 from synthetic import ROOT
 
-import dense_ratios
-from documents import cuts, speed
-from documents.stored import Stored
+from cleave_scripts.documents import cuts, speed
+from cleave_scripts.documents.stored import Stored
+from cleave_scripts.measurements import dense_ratios
 
 STAND_IN = f"""#!/usr/bin/python3
 import os, pathlib, sys

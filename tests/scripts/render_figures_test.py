@@ -9,12 +9,12 @@ import numpy
 from browser import blank_reason
 from synthetic import run_script
 
-from cleave_results import ResultError
-from motion import load_motion
-from motion_colours import EDGE, NODE, PART_COLOURS
-from motion_pictures import Stage, picture_of_bodies, picture_of_parts, picture_with_graph
-from picture_sheets import cells_of, colours_of_cells
-from povray_scene import CONSTANT_LIGHT, Camera, graph, render
+from cleave_scripts.motion.colours import EDGE, NODE, PART_COLOURS
+from cleave_scripts.motion.picture_sheets import cells_of, colours_of_cells
+from cleave_scripts.motion.pictures import Stage, picture_of_bodies, picture_of_parts, picture_with_graph
+from cleave_scripts.motion.povray_scene import CONSTANT_LIGHT, Camera, graph, render
+from cleave_scripts.motion.recording import load_motion
+from cleave_scripts.results.errors import ResultError
 
 SIZE = (160, 130)
 LAST = motion_data.STEPS - 1

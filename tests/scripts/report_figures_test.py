@@ -8,11 +8,11 @@ import numpy
 from matplotlib.colors import to_rgb
 from report_data import report_row, rows_of, whole_system, write_run, write_tree
 
-from cleave_results import SCENES
-from colour_vision import contrast
-from figures import choose, data, interface_cost, style
-from figures.registry import FIGURES
-from figures.runs import runs_body
+from cleave_scripts.figures import choose, data, interface_cost, style
+from cleave_scripts.figures.registry import FIGURES
+from cleave_scripts.figures.runs import runs_body
+from cleave_scripts.motion.colour_vision import contrast
+from cleave_scripts.results.paper import SCENES
 
 def difference(first, second):
     """The least of the differences that usual and red-green blind eyes see; 2.3 is just noticeable."""

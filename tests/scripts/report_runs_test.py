@@ -6,9 +6,9 @@ import unittest
 
 from synthetic import ROOT, SCRIPTS, run_script
 
-from cleave_results import SCENES
-from figures import data, style
-from figures.registry import FIGURES
+from cleave_scripts.figures import data, style
+from cleave_scripts.figures.registry import FIGURES
+from cleave_scripts.results.paper import SCENES
 
 STAND_IN = f"""#!/usr/bin/python3
 import os, sys

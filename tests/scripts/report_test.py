@@ -10,12 +10,13 @@ import matplotlib.image
 from report_data import PAPER, manifest, report_row, rows_of, whole_system, write_run, write_tree
 from synthetic import run_script, write_manifest, write_steps
 
-from cleave_results import NO_PARTITIONER, PARTITIONERS
-from figures import data, kernel_value, solver_groups, style, times_by_step, trade_off, tree
-from figures.registry import FIGURES
-from figures.tables import scene_tables
-from figures.tree import NoData
-from figures.verdicts import judge_all
+from cleave_scripts.figures import data, kernel_value, solver_groups, style, times_by_step, trade_off, tree
+from cleave_scripts.figures.registry import FIGURES
+from cleave_scripts.figures.tables import scene_tables
+from cleave_scripts.figures.tree import NoData
+from cleave_scripts.figures.verdicts import judge_all
+from cleave_scripts.results.paper import PARTITIONERS
+from cleave_scripts.results.steps import NO_PARTITIONER
 
 
 class TreeTest(unittest.TestCase):

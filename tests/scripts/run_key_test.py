@@ -1,4 +1,4 @@
-"""What decides that results are there already: scripts/run_key.py, seen through scripts/reproduce."""
+"""What decides that results are there already: scripts/cleave_scripts/results/run_key.py, seen through scripts/reproduce."""
 import json
 import os
 import pathlib
@@ -10,8 +10,8 @@ from reproduce_test import STAND_IN
 from stand_in import StandInCase
 from synthetic import ROOT, run_script
 
-import run_key
-from cleave_results import ResultError
+from cleave_scripts.results import run_key
+from cleave_scripts.results.errors import ResultError
 
 KEY = {"run_id": "1", "threads": 2, "git_hash": "a" * 40, "git_dirty": "false", "flags": "-O3", "build_type": "Release",
        "cpu_model": "C", "cores": 2}

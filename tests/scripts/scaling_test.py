@@ -4,7 +4,7 @@ import unittest
 from stand_in import StandInCase
 from synthetic import ROOT
 
-from figures import data, times_by_size
+from cleave_scripts.figures import data, times_by_size
 
 STAND_IN = f"""#!/usr/bin/python3
 import os, sys

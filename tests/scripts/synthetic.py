@@ -9,7 +9,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 
-from cleave_results import PARTITIONERS, REFINERS, SCENES  # noqa: E402
+from cleave_scripts.results.paper import PARTITIONERS, REFINERS, SCENES  # noqa: E402
 
 COMBINATIONS = [(partitioner, refiner) for partitioner in PARTITIONERS for refiner in REFINERS]
 STEPS = range(0, 500, 50)

@@ -8,7 +8,7 @@ import unittest
 
 from synthetic import COMBINATIONS, good_row, matrix, run_script, write_manifest, write_matrix, write_steps
 
-from cleave_results import SCENES, load_paper_table1
+from cleave_scripts.results.paper import SCENES, load_paper_table1
 
 MANIFEST = {
     "options": {
