@@ -15,6 +15,7 @@ from cleave_scripts.motion.pictures import Stage, picture_of_bodies, picture_of_
 from cleave_scripts.motion.povray_scene import CONSTANT_LIGHT, Camera, graph, render
 from cleave_scripts.motion.recording import load_motion
 from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.paper import COMBINATIONS
 
 SIZE = (160, 130)
 LAST = motion_data.STEPS - 1
@@ -118,10 +119,10 @@ class PictureTest(Scratch):
     def test_parts_of_figure_2_have_one_colour_in_all_cells(self):
         motion = self.motion()
         parts = numpy.arange(motion_data.BODIES) // 2
-        for position in range(15):
+        for position in range(len(COMBINATIONS)):
             motion.measured["part"][9, position] = numpy.random.default_rng(position).permutation(9)[parts]
         colours = colours_of_cells(motion, 9, cells_of(motion))
-        self.assertEqual(len(colours), 15)
+        self.assertEqual(len(colours), len(COMBINATIONS))
         for colour in colours.values():
             numpy.testing.assert_array_equal(colour, colours["mindp", "none"])
 
@@ -151,7 +152,7 @@ class CommandTest(Scratch):
         for name in ("figure1", "figure2", "film_strip"):
             self.assertIsNone(blank_reason(matplotlib.image.imread(figures / f"{name}.png")[..., :3]), name)
         self.assertEqual(result.stderr.count("film strip:"), 9)  # three scenes by steps 0, 10, 20
-        self.assertEqual(result.stderr.count("figure 2:"), 15)
+        self.assertEqual(result.stderr.count("figure 2:"), len(COMBINATIONS))
 
     def test_what_was_not_recorded_is_a_gap(self):
         motion_data.write_motion(self.directory, labels=["mix+fm+schur", "bfs+none+schur"])

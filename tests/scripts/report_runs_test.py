@@ -8,7 +8,7 @@ from synthetic import ROOT, SCRIPTS, run_script
 
 from cleave_scripts.figures import data, style
 from cleave_scripts.figures.registry import FIGURES
-from cleave_scripts.results.paper import SCENES
+from cleave_scripts.results.paper import REFINERS, SCENES
 
 STAND_IN = f"""#!/usr/bin/python3
 import os, sys
@@ -23,7 +23,6 @@ with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write(" ".join(sys.argv[1:]) + "\\n")
 if os.environ.get("STAND_IN_STOP") == os.path.basename(given["out"]):
     sys.exit(130)
-names = lambda option, every: every if given[option] == "all" else given[option].split(",")
 rows = []
 for solver in given["solver"].split(","):
     changes = dict(solver=solver, threads=int(given["threads"]), bodies=int(given.get("bodies", 200)),
@@ -31,8 +30,7 @@ for solver in given["solver"].split(","):
     if "kernel" in given:
         changes |= dict(solver="pivot:" + given["kernel"], kernel=given["kernel"])
     if solver.startswith("schur"):
-        rows += rows_of(given["scene"], names("partitioner", ("mindp", "maxdp", "bfs", "mr", "mix")),
-                        names("refiner", ("none", "kl", "fm")), (9, 19), **changes)
+        rows += rows_of(given["scene"], given["partitioner"].split(","), given["refiner"].split(","), (9, 19), **changes)
     else:
         rows += rows_of(given["scene"], ("-",), ("-",), (9, 19), **changes)
 write_steps(given["out"], rows)
@@ -76,7 +74,7 @@ class ReportRunsTest(unittest.TestCase):
         self.assertEqual(len(motion), 3)
         self.assertTrue(all("--measure-every 2 --repeats 1 " in call for call in motion))
         every, = [call for call in calls if "--measure-every 1 " in call]
-        self.assertIn("--scene log_tower --partitioner mindp --refiner all", every)
+        self.assertIn(f"--scene log_tower --partitioner mindp --refiner {','.join(REFINERS)}", every)
         environment = dict(os.environ, CLEAVE_PROGRAM=str(self.program), STAND_IN_LOG=str(self.log))
         # scripts/reproduce ends with a check that made-up rows need not pass.
         run_script("reproduce", "--out", self.directory / "out", "--steps", 100, env=environment)

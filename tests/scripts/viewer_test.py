@@ -96,7 +96,7 @@ class PackTest(MotionTest):
 
         for index in range(len(part)):
             numpy.testing.assert_array_equal(colour[index, 0], colour[0, 0])
-            for combination in range(15):
+            for combination in range(len(motion.combinations)):
                 numpy.testing.assert_array_equal(cut(colour[index, combination]),
                                                  cut(part[index, combination]))
         island = arrays["islandColour"].reshape(motion.measured.island.shape)

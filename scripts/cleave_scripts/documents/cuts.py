@@ -1,17 +1,15 @@
 """What partitioners and refiners cost, and what the open choices of the method do to the cut."""
+import tomllib
+
 from cleave_scripts.documents.stored import need
+from cleave_scripts.results.paper import DATA
 from cleave_scripts.table import text
 
-CHOICES = {
-    "default": (),
-    "degree whole": ("--degree-scope", "whole"),
-    "degree constraints": ("--degree", "constraints"),
-    "as printed": ("--as-printed",),
-    "tau_mr 10.5": ("--tau-mr", "10.5"),
-}
+CUTS = tomllib.loads((DATA / "cuts.toml").read_text(encoding="utf-8"))
+CHOICES = {choice["name"]: tuple(choice["options"]) for choice in CUTS["choice"]}
 ABLATION = ("ablation.csv", "scripts/ablation")
 SPEED = ("partition_benchmark.json", "scripts/benchmark_partitioners")
-TIMED = ("mindp+none", "mindp+kl", "mindp+fm", "mix+none", "mix+kl", "mix+fm", "metis_recursive", "metis_kway")
+TIMED = CUTS["timed"]
 GRAPHS = {"pile_200": "200 bodies, 353 edges", "pile_600": "600 bodies, 1059 edges"}
 
 
@@ -48,10 +46,8 @@ def _change(found, choice):
 def ablation_facts(stored):
     """The change of the cut under a choice, for the combinations it is about."""
     cells = _by_cell(need(stored.table(*ABLATION), "the ablation"))
-    about = (("degree whole", ("mindp+none", "maxdp+none", "mix+none")), ("degree constraints", ("mindp+none", "mix+none")),
-             ("as printed", ("mindp+kl", "mindp+fm", "mix+fm")), ("tau_mr 10.5", ("mr+none", "mr+fm")))
-    lines = [[choice, f"`{name}`", *(_change(found[name], choice) for found in cells.values())]
-             for choice, names in about for name in names]
+    lines = [[choice["name"], f"`{name}`", *(_change(found[name], choice["name"]) for found in cells.values())]
+             for choice in CUTS["choice"] for name in choice["about"]]
     return "Interface rows against the default:\n\n" + text.table(["choice", "", *cells], lines)
 
 
@@ -62,7 +58,7 @@ def partition_speed(stored):
         row = [entries[f"{graph}/{name}_median"] for name in TIMED]
         lines.append([title, *(text.number(entry["cpu_time"]) for entry in row)])
         cut.append([title, *(f"{entry['interface_rows']:.0f}" for entry in row)])
-    names = [name.replace("metis_recursive", "METIS recursive").replace("metis_kway", "METIS k-way") for name in TIMED]
+    names = list(TIMED.values())
     return (f"CPU time in µs, medians, one core; {stored.origin(SPEED[0])}:\n\n" + text.table(["", *names], lines) +
             "\n\nInterface rows:\n\n" + text.table(["", *names], cut))
 

@@ -4,8 +4,9 @@ import statistics
 import subprocess
 
 from cleave_scripts.documents.stored import need
+from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.errors import ResultError
-from cleave_scripts.results.paper import SCENES, load_paper_table1
+from cleave_scripts.results.paper import PAPER, SCENES, load_paper_table1
 from cleave_scripts.table import text
 from cleave_scripts.table.formats import format_markdown, format_text
 from cleave_scripts.table.timing_table import build_tables
@@ -17,7 +18,8 @@ FULL_COMBINATIONS = ("mindp", "mix", "bfs")
 
 
 def _tables(stored):
-    return build_tables(stored.rows(*DATA), load_paper_table1(), [("solver", "schur")])
+    setup = setup_columns(*(run.manifest for run in stored.runs(*DATA)))
+    return build_tables(stored.rows(*DATA), load_paper_table1(), [("solver", PAPER["solver"])], setup)
 
 
 def table1(stored):

@@ -4,7 +4,7 @@ from cleave_scripts.table import text
 
 # What, below results/: what it holds.
 SETS = {
-    "full": "the matrix: four scenes, 15 combinations; Table 1",
+    "full": "the matrix: the paper's scenes and combinations; Table 1",
     "report": "what the report draws besides: rock piles of growing size, every step of Log Tower, one thread, other "
               "kernels and solvers",
     "report/verdicts.csv": "the paper's claims, judged",

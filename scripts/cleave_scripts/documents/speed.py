@@ -4,7 +4,7 @@ import statistics
 
 from cleave_scripts.documents.stored import need
 from cleave_scripts.measurements import dense_ratios, model_ratios, solver_ratios, thread_times
-from cleave_scripts.results.paper import SCENES
+from cleave_scripts.results.paper import BEST, SCENES
 from cleave_scripts.table import text
 
 THREADS = ("two_threads.csv", "scripts/two_threads")
@@ -57,7 +57,7 @@ def busy_machine(stored):
     times = thread_times.by_load(need(stored.table(*BUSY), "busy loops"))
     busy = ", ".join(f"{text.number(time / times[0])} times as long beside {loops} busy "
                      f"{'loop' if loops == 1 else 'loops'}" for loops, time in times.items() if loops)
-    return (f"A step of Large Rock Pile with `mix+fm` takes {text.number(times[0])} ms on two threads of an idle machine, and "
+    return (f"A step of Large Rock Pile with `{'+'.join(BEST)}` takes {text.number(times[0])} ms on two threads of an idle machine, and "
             f"{busy} of other login sessions (`{BUSY[1]}`; {stored.origin(BUSY[0])}).")
 
 

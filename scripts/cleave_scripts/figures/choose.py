@@ -1,68 +1,13 @@
-"""Which rows belong together: blocks measured under one setup, and those of the paper's experiment."""
-import dataclasses
+"""Which blocks belong together: those of the paper's experiment, the longest run, and what a caption says of them."""
 import itertools
 
 import pandas
 
-from cleave_scripts.figures.style import in_order
 from cleave_scripts.figures.tree import NoData, need
 from cleave_scripts.results.command_line import counted
 from cleave_scripts.results.manifest import machine
+from cleave_scripts.results.names import in_order
 from cleave_scripts.results.paper import REFINERS, SCENES
-from cleave_scripts.results.steps import NO_PARTITIONER
-from cleave_scripts.table.timing_table import SAME_IN_A_SCENE
-
-# Options that do not change what problem is solved or how it is split; all others are part of the setup.
-RUN_OPTIONS = {
-    "scene", "partitioner", "refiner", "solver", "steps", "measure-every", "skip", "repeats", "threads",
-    "seed", "out", "force", "advance", "ode-step-max-rows"
-}
-WRITING = ("record", "write", "motion")  # what else a run puts down
-# Options that make a solver another one, with their defaults.
-SOLVER_OPTIONS = {
-    "sweeps": "5",
-    "predictor-sweeps": "40",
-    "max-iterations": "100",
-    "strategy": "",
-    "kernel": "",
-    "reuse-analysis": "False",
-    "quickstep-iterations": "20"
-}
-ONLY_OF = {"quickstep-iterations": "ode-quickstep", "sweeps": "pgs"}  # other solvers ignore them
-SCALING_FOLDER = "scaling"
-
-
-@dataclasses.dataclass(eq=False)
-class Block:
-    """Rows of one experiment and one scene that may be averaged; rows carry the label of their solver."""
-
-    experiment: object
-    scene: str
-    setup: frozenset  # of (option, value)
-    rows: pandas.DataFrame
-
-    @property
-    def threads(self):
-        known = self.rows["threads"].dropna() if "threads" in self.rows else ()
-        return int(known.iloc[0]) if len(known) else None
-
-    @property
-    def label(self):
-        """Of a block of one solver: its name with the options that make it another."""
-        return self.rows["label"].iloc[0]
-
-    @property
-    def ok(self):
-        return self.rows[self.rows["status"] == "ok"]
-
-    @property
-    def is_scaling(self):
-        return SCALING_FOLDER in self.experiment.name.split("/")
-
-    def of_solver(self, solver):
-        """The same block with the rows of one solver that works on parts, or None."""
-        rows = self.rows[(self.rows["solver"] == solver) & (self.rows["partitioner"] != NO_PARTITIONER)]
-        return dataclasses.replace(self, rows=rows) if len(rows) else None
 
 
 def title(scene):
@@ -71,56 +16,6 @@ def title(scene):
 
 def combinations(rows):
     return set(zip(rows["partitioner"], rows["refiner"]))
-
-
-def make_blocks(tree):
-    """Splits every experiment by scene and by the columns that may not be mixed in a mean."""
-    blocks = []
-    for experiment in tree.experiments:
-        columns = [
-            column for column in ("scene", *SAME_IN_A_SCENE, "bodies")
-            if column in experiment.rows.columns and column != "solver"
-        ]
-        rows = experiment.rows.assign(label=_labels(experiment))
-        for _, part in rows.groupby(columns, dropna=False, sort=False):
-            blocks.append(Block(experiment, part["scene"].iloc[0], _setup(experiment, part, columns), part))
-    return blocks
-
-
-def _is_solver_option(name):
-    return name in SOLVER_OPTIONS or "iterations" in name
-
-
-def _labels(experiment):
-    """The solver's name with the options that make it another solver: 'pgs, 100 sweeps'."""
-    options = experiment.manifest.get("options", {})
-    changed = {
-        name: options[name]
-        for name in sorted(options)
-        if _is_solver_option(name) and str(options[name]) != SOLVER_OPTIONS.get(name)
-    }
-
-    def label(solver):
-        # With --kernel the program writes pivot:schur-bodies, which says it already.
-        extras = [
-            name if value == "True" else f"{value} {name}"
-            for name, value in changed.items()
-            if value not in solver.split(":") and ONLY_OF.get(name, solver) == solver
-        ]
-        return ", ".join([solver, *extras]).replace("quickstep-iterations", "iterations")
-
-    return experiment.rows["solver"].map(label)
-
-
-def _setup(experiment, rows, columns):
-    options = experiment.manifest.get("options", {})
-    entries = {
-        name: str(value)
-        for name, value in options.items()
-        if not (name in RUN_OPTIONS or name.startswith(WRITING) or _is_solver_option(name))
-    }
-    entries |= {column: str(rows[column].iloc[0]) for column in columns if column not in ("scene", "threads")}
-    return frozenset(entries.items())
 
 
 def main_blocks(blocks, solver):
@@ -153,7 +48,7 @@ def main_blocks(blocks, solver):
 
 def preference(part):
     """Sorts blocks of one scene: first the one whose times say most."""
-    return (part.label != part.rows["solver"].iloc[0], -len(combinations(part.rows)), -repeats(part),
+    return (not part.is_default, -len(combinations(part.rows)), -repeats(part),
             -len(part.rows), -(part.threads or 0), part.experiment.name)
 
 
@@ -177,8 +72,7 @@ def most_steps(blocks, scene, solver, partitioner):
     parts = full or [part for part in parts if partitioner in set(part.rows["partitioner"])]
     if not parts:
         raise NoData(f"no rows of {partitioner} in scene {scene}")
-    parts.sort(key=lambda part:
-               (part.label != part.rows["solver"].iloc[0], -step_count(part.rows), preference(part)))
+    parts.sort(key=lambda part: (not part.is_default, -step_count(part.rows), preference(part)))
     first = parts[0]
     return [
         part for part in parts

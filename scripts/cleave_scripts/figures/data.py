@@ -1,10 +1,12 @@
 """What every figure draws from."""
 import dataclasses
 
-from cleave_scripts.figures import style
-from cleave_scripts.figures.choose import main_blocks, make_blocks
+from cleave_scripts.figures import looks
+from cleave_scripts.figures.blocks import make_blocks
+from cleave_scripts.figures.choose import main_blocks
 from cleave_scripts.figures.tree import read_tree
 from cleave_scripts.results.command_line import counted
+from cleave_scripts.results.names import NO_PARTITIONER
 
 
 @dataclasses.dataclass
@@ -19,8 +21,7 @@ class Data:
 def load(directory, solver):
     tree = read_tree(directory)
     blocks = make_blocks(tree)
-    style.give_colors(name for block in blocks for name in block.rows["partitioner"])
-    style.give_looks(name for block in blocks for name in block.rows["solver"])
+    looks.meet([experiment.rows for experiment in tree.experiments])
     main, notes = main_blocks(blocks, solver)
     return Data(tree, solver, blocks, main, [*tree.messages, *notes, *_failures(tree)])
 
@@ -32,7 +33,7 @@ def _failures(tree):
         if len(failed):
             groups = failed.groupby(["status", "solver", "partitioner", "refiner"]).size()
             texts = [
-                f"{count} {status} by {' '.join(name for name in names if name != '-')}"
+                f"{count} {status} by {' '.join(name for name in names if name != NO_PARTITIONER)}"
                 for (status, *names), count in groups.items()
             ]
             yield (f"{experiment.name}: {counted(len(failed), 'row')} of {len(experiment.rows)} not ok: "

@@ -4,7 +4,7 @@ The trend is fitted only where the data can tell it; elsewhere a line has the sl
 """
 import numpy
 
-from cleave_scripts.figures import style
+from cleave_scripts.figures import looks, style
 from cleave_scripts.figures.choose import provenance, scenes_with, title
 from cleave_scripts.figures.tree import NoData
 
@@ -57,15 +57,9 @@ def draw(data):
         else:
             _empty(ax, "no constraint is cut" if scene in scenes else "no data")
         ax.set_title(title(scene))
-    names = style.partitioners_in(name for rows in scenes.values() for name in rows["partitioner"])
-    refiners = style.refiners_in(name for rows in scenes.values() for name in rows["refiner"])
-    marks = [
-        style.matplotlib.lines.Line2D([], [],
-                                      **{
-                                          **style.line_look("-", name), "linestyle": "none"
-                                      },
-                                      label=name) for name in refiners
-    ]
+    names = looks.partitioners_in(name for rows in scenes.values() for name in rows["partitioner"])
+    refiners = looks.refiners_in(name for rows in scenes.values() for name in rows["refiner"])
+    marks = style.refiner_marks(refiners)
     style.legend_above(figure, [*style.partitioner_patches(names), *marks], columns=len(names) + len(marks))
     return figure, (
         "Mean time of a solve against the constraint rows r that the partition cuts; every point is one "
@@ -81,7 +75,7 @@ def draw(data):
 def _panel(ax, rows):
     means = averages(rows)
     for _, mean in means.iterrows():
-        look = {**style.line_look(mean["partitioner"], mean["refiner"]), "linestyle": "none"}
+        look = {**looks.line_look(mean["partitioner"], mean["refiner"]), "linestyle": "none"}
         ax.plot(mean["r"], mean["t"], **look, markersize=6, markeredgecolor="white", markeredgewidth=0.6)
     limits = [0.9 * means["r"].min(), 1.1 * means["r"].max()]
     if bears_a_fit(means):

@@ -1,41 +1,35 @@
-"""What a better kernel does to the value of partitioning: t_s of mindp + none over mix + fm under each."""
+"""What a better kernel does to the value of partitioning: t_s of the paper's plain over its best combination under each."""
 import pandas
 
-from cleave_scripts.figures import solver_groups, style
+from cleave_scripts.figures import looks, solver_groups, style
 from cleave_scripts.figures.choose import provenance
 from cleave_scripts.figures.spread import interval, resampled_means
 from cleave_scripts.figures.tree import NoData
 from cleave_scripts.results.command_line import counted
-
-KERNELS = ("schur-rows", "schur-bodies")
-WORSE, BETTER = ("mindp", "none"), ("mix", "fm")
-SOLVERS = {"schur-rows": "schur", "schur-bodies": "pivot:schur-bodies"}  # whose look a kernel has
-
-
-def strategy_of(solver, kernel):
-    """The strategy a solver was asked for: 'pivot:schur-rows' and 'schur' are pivot."""
-    name = solver.removesuffix(":" + kernel)
-    return "pivot" if name == "schur" else name
+from cleave_scripts.results.paper import BEST, PLAIN
 
 
 def ratios(parts):
-    """{strategy: [(ratio, low, high, steps) of each kernel]} on the steps that all four cells solved."""
+    """{strategy: {kernel: (ratio, low, high, steps)}} of several kernels on the steps that all their cells solved."""
     rows = pandas.concat([part.ok for part in parts], ignore_index=True)
     if not {"kernel", "t_s_ms"} <= set(rows.columns):
         raise NoData("column kernel or t_s_ms is missing")
-    rows = rows[rows["kernel"].isin(KERNELS)]
-    strategies = [strategy_of(*names) for names in zip(rows["solver"], rows["kernel"])]
-    index = ["seed", "step"] if "seed" in rows else ["step"]
-    cells = [(kernel, *combination) for kernel in KERNELS for combination in (WORSE, BETTER)]
     found = {}
-    for strategy, frame in rows.groupby(strategies):
-        times = frame.pivot_table("t_s_ms", index, ["kernel", "partitioner", "refiner"])
-        if set(cells) <= set(times.columns):
-            times = times[cells].dropna().to_numpy()
-            times = times[(times > 0).all(axis=1)]
-            if len(times):
-                found[strategy] = [_ratio(times[:, :2]), _ratio(times[:, 2:])]
+    for strategy, frame in rows.groupby("asked_strategy"):
+        ratios_of = _ratios_of_kernels(frame)
+        if len(ratios_of) > 1:
+            found[strategy] = ratios_of
     return found
+
+
+def _ratios_of_kernels(rows):
+    index = ["seed", "step"] if "seed" in rows else ["step"]
+    times = rows.pivot_table("t_s_ms", index, ["kernel", "partitioner", "refiner"])
+    cells = {kernel: [(kernel, *PLAIN), (kernel, *BEST)] for kernel in rows["kernel"].unique()}
+    cells = {kernel: pair for kernel, pair in cells.items() if set(pair) <= set(times.columns)}
+    times = times[sum(cells.values(), [])].dropna()
+    times = times[(times > 0).all(axis=1)]
+    return {kernel: _ratio(times[pair].to_numpy()) for kernel, pair in cells.items()} if len(times) else {}
 
 
 def _ratio(times):
@@ -45,45 +39,52 @@ def _ratio(times):
 
 
 def draw(data):
-    bars = []
-    used = {}
+    bars, used = [], {}  # (text, {kernel: ratio})
     for name, parts in solver_groups.groups(data.blocks).items():
-        found = ratios(parts)
-        for strategy, pair in found.items():
-            bars.append((f"{name}\n{strategy}, {counted(pair[0][3], 'step')}", pair))
+        for strategy, of_kernels in ratios(parts).items():
+            steps = next(iter(of_kernels.values()))[3]
+            bars.append((f"{name}\n{strategy}, {counted(steps, 'step')}", of_kernels))
             used[name] = parts
+    worse, better = " + ".join(PLAIN), " + ".join(BEST)
     if not bars:
-        raise NoData(
-            f"nowhere were both {' '.join(WORSE)} and {' '.join(BETTER)} solved under {KERNELS[0]} and "
-            f"{KERNELS[1]} with one strategy and setup")
+        raise NoData(f"nowhere were both {' '.join(PLAIN)} and {' '.join(BEST)} solved under several kernels with one "
+                     "strategy and setup")
+    kernels = list(dict.fromkeys(kernel for _, of_kernels in bars for kernel in of_kernels))
+    figure = _draw(bars, looks.marks(kernels), f"$t_s$ of {worse} over $t_s$ of {better}")
+    return figure, (
+        f"How much partitioning is worth under several kernels: mean t_s of {worse} over that of {better} on the same "
+        f"steps; lines are 95 % intervals. At 1 (dashed) the partition does not matter. " + provenance(used))
+
+
+def _draw(bars, marks, what):
     figure, ax = style.pyplot.subplots(figsize=(style.WIDTH_IN, 0.6 * len(bars) + 1.0))
-    for y, (_, pair) in enumerate(bars):
-        for shift, kernel, (ratio, low, high, _) in zip((-0.12, 0.12), KERNELS, pair):
-            look = style.solver_look(SOLVERS[kernel])
-            ax.hlines(y + shift, low, high, color=look["color"], linewidth=1.4)
-            ax.plot(ratio,
-                    y + shift,
-                    linestyle="none",
-                    markersize=6,
-                    **look,
-                    label=kernel if y == 0 else None)
-            ax.annotate(f"{ratio:.2f}", (max(high, ratio), y + shift), (5, 0),
-                        textcoords="offset points",
-                        va="center",
-                        bbox={
-                            "facecolor": "white",
-                            "linewidth": 0,
-                            "pad": 0.5
-                        })
+    for y, (_, of_kernels) in enumerate(bars):
+        for index, (kernel, (ratio, low, high, _)) in enumerate(of_kernels.items()):
+            place = y + 0.24 * (index - (len(of_kernels) - 1) / 2)
+            _mark(ax, place, (ratio, low, high), marks[kernel])
     ax.axvline(1, color=style.MUTED, linewidth=0.8, linestyle="--")
     ax.set_yticks(range(len(bars)), [name for name, _ in bars])
     ax.set_ylim(len(bars) - 0.5, -0.5)
     ax.tick_params(axis="y", length=0)
     ax.grid(axis="y", visible=False)
     ax.margins(x=0.12)
-    ax.set_xlabel(f"$t_s$ of {' + '.join(WORSE)} over $t_s$ of {' + '.join(BETTER)}")
-    style.legend_above(figure, ax.get_legend_handles_labels()[0], columns=2)
-    return figure, (
-        f"How much partitioning is worth under two kernels: mean t_s of {' + '.join(WORSE)} over that of "
-        f"{' + '.join(BETTER)} on the same steps; lines are 95 % intervals. At 1 (dashed) the partition "
-        f"does not matter. " + provenance(used))
+    ax.set_xlabel(what)
+    style.legend_above(figure, [
+        style.matplotlib.lines.Line2D([], [], **mark, linestyle="none", markersize=6, label=kernel)
+        for kernel, mark in marks.items()
+    ], columns=len(marks))
+    return figure
+
+
+def _mark(ax, y, values, mark):
+    ratio, low, high = values
+    ax.hlines(y, low, high, color=mark["color"], linewidth=1.4)
+    ax.plot(ratio, y, linestyle="none", markersize=6, **mark)
+    ax.annotate(f"{ratio:.2f}", (max(high, ratio), y), (5, 0),
+                textcoords="offset points",
+                va="center",
+                bbox={
+                    "facecolor": "white",
+                    "linewidth": 0,
+                    "pad": 0.5
+                })

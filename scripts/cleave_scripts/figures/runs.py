@@ -3,9 +3,10 @@ import re
 
 from cleave_scripts.figures import page
 from cleave_scripts.figures.choose import step_count, title
-from cleave_scripts.figures.style import in_order
 from cleave_scripts.figures.table_html import rich
 from cleave_scripts.results.manifest import machine
+from cleave_scripts.results.names import in_order
+from cleave_scripts.results.paper import SCENES
 
 HEAD = ("directories", "scenes", "solvers", "steps measured", "rows ok", "state")
 
@@ -31,7 +32,7 @@ def _lines(experiments):
         groups.setdefault(_alike(experiment), []).append(experiment)
     for (folder, solvers, steps, state), found in groups.items():
         names = ", ".join(sorted((experiment.name.rpartition("/")[2] for experiment in found), key=_natural))
-        scenes = in_order((scene for experiment in found for scene in experiment.rows["scene"]), ())
+        scenes = in_order((scene for experiment in found for scene in experiment.rows["scene"]), SCENES)
         status = [value for experiment in found for value in experiment.rows["status"]]
         yield (f"{folder}/ {names}" if folder else names, ", ".join(map(title, scenes)), solvers, steps,
                f"{status.count('ok')} of {len(status)}", state)

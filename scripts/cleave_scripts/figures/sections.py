@@ -16,7 +16,7 @@ PAPER, BEYOND, RUNS = "The paper", "Beyond the paper", "The runs"
 RENDERED = ((
     "figure1", "Figure 1: the scenes and their constraint graphs",
     "Bodies of Chain Drop, Rock Pile and Log Tower with the graph over them: nodes blue, edges red."),
-            ("figure2", "Figure 2: one frame of Rock Pile, split in fifteen ways",
+            ("figure2", "Figure 2: one frame of Rock Pile, split by every combination",
              "Bodies coloured by part, edges between parts drawn; partitioners across, refiners down."))
 
 

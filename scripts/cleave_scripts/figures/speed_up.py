@@ -3,9 +3,10 @@ import re
 
 import pandas
 
-from cleave_scripts.figures import style
+from cleave_scripts.figures import looks, style
 from cleave_scripts.figures.choose import machines, preference, title
 from cleave_scripts.figures.tree import NoData
+from cleave_scripts.results.names import NO_PARTITIONER
 
 MODEL = re.compile(r"t_s_model_p(\d+)_ms")
 SPREAD = 1.35  # ratio of the places of the last and the first mark of as many workers
@@ -27,9 +28,9 @@ def draw(data):
         ax.set_title(name)
     _limits(axes)
     rows = pandas.concat([base.ok for _, base, _ in groups])
-    names, refiners = style.partitioners_in(rows["partitioner"]), style.refiners_in(rows["refiner"])
+    names, refiners = looks.partitioners_in(rows["partitioner"]), looks.refiners_in(rows["refiner"])
     lines = [
-        style.matplotlib.lines.Line2D([], [], **style.line_look("-", name), label=name) for name in refiners
+        style.matplotlib.lines.Line2D([], [], **looks.line_look(NO_PARTITIONER, name), label=name) for name in refiners
     ]
     lines.append(style.matplotlib.lines.Line2D([], [], **IDEAL, label="ideal"))
     style.legend_above(figure, [*style.partitioner_patches(names), *lines], columns=len(names) + len(lines))
@@ -88,7 +89,7 @@ def _model(ax, rows):
     ax.plot([1, max(columns)], [1, max(columns)], **IDEAL, gid="ideal")
     for (partitioner, refiner), part in rows.groupby(["partitioner", "refiner"]):
         means = part[list(columns.values())].mean()
-        look = style.line_look(partitioner, refiner)
+        look = looks.line_look(partitioner, refiner)
         ax.plot(list(columns), means[columns[1]] / means, **look, markersize=3, linewidth=1)
     ax.set(xscale="log", yscale="log", xlabel="workers", ylabel="speed-up of $t_s$")
     ax.set_xticks(list(columns), list(map(str, columns)))
@@ -103,7 +104,7 @@ def _measured(ax, base, others):
         both = base.ok.merge(other.ok, on=keys, suffixes=("_1", "_n"))
         combinations = list(both.groupby(["partitioner", "refiner"]))
         for index, ((partitioner, refiner), part) in enumerate(combinations):
-            look = style.line_look(partitioner, refiner)
+            look = looks.line_look(partitioner, refiner)
             # Side by side, as many would lie on top of each other.
             shift = SPREAD**(index / max(len(combinations) - 1, 1) - 0.5)
             ax.plot(other.threads * shift,

@@ -4,10 +4,11 @@ import statistics
 
 import pandas
 
-from cleave_scripts.figures import style
+from cleave_scripts.figures import looks, style
 from cleave_scripts.figures.choose import provenance, scenes_with, title
 from cleave_scripts.figures.solver_groups import MOST_PANELS, groups, shared_rows
 from cleave_scripts.figures.tree import NoData
+from cleave_scripts.results.names import NO_PARTITIONER
 
 COLUMNS = 2
 LONGEST_BAR = 3  # medians of a panel; longer bars are cut
@@ -25,8 +26,8 @@ def draw_combinations(data):
     scenes, gaps = scenes_with(data.main, "t_s_ms")
     bars = {
         title(scene): [((partitioner, refiner), f"{partitioner} {refiner}", part)
-                       for partitioner in style.partitioners_in(frame["partitioner"])
-                       for refiner in style.refiners_in(frame["refiner"])
+                       for partitioner in looks.partitioners_in(frame["partitioner"])
+                       for refiner in looks.refiners_in(frame["refiner"])
                        if len(part := frame[(frame["partitioner"] == partitioner) &
                                             (frame["refiner"] == refiner)])
                       ] for scene, frame in scenes.items()
@@ -58,7 +59,7 @@ def _fastest(rows):
     for label, frame in rows.groupby("label"):
         combination = frame.groupby(["partitioner", "refiner"])["t_s_ms"].mean().idxmin()
         part = frame[(frame["partitioner"] == combination[0]) & (frame["refiner"] == combination[1])]
-        name = label if combination[0] == "-" else f"{label} ({' '.join(combination)})"
+        name = label if combination[0] == NO_PARTITIONER else f"{label} ({' '.join(combination)})"
         bars.append((combination, name, part))
     return sorted(bars, key=lambda bar: bar[2]["t_s_ms"].mean())
 
@@ -68,8 +69,8 @@ def _draw(panels):
     stages = stage_columns(frames)
     if not stages:
         raise NoData("no column t_s_<stage>_ms with a time")
-    looks = style.stage_colors(stages.values())
-    colors = {column: looks[stage] for column, stage in stages.items()}
+    stage_colors = looks.stage_colors(stages.values())
+    colors = {column: stage_colors[stage] for column, stage in stages.items()}
     counts = list(map(len, panels.values()))
     most_of_line = [max(counts[first:first + COLUMNS]) for first in range(0, len(counts), COLUMNS)]
     heights = [0.165 * most + 0.75 for most in most_of_line]
@@ -116,7 +117,7 @@ def _panel(ax, bars, colors):
     ax.set_xlim(0, limit or 1)
     ax.set_yticks(range(len(bars)), [name for _, name, _ in bars], fontsize=7)
     for tick, (combination, *_) in zip(ax.get_yticklabels(), bars):
-        tick.set_color(style.readable(style.color(combination[0])))
+        tick.set_color(looks.readable(looks.color(combination[0])))
     ax.tick_params(axis="y", length=0)
     ax.grid(axis="y", visible=False)
     ax.set_xlabel("mean $t_s$ per step, ms")

@@ -4,11 +4,11 @@ import itertools
 import math
 import re
 
-from cleave_scripts.figures import style
+from cleave_scripts.figures import looks, style
 from cleave_scripts.figures.claims import HALF
 from cleave_scripts.figures.verdicts import NOT_REPRODUCED, OPEN, REPRODUCED, RULE, WITHIN_NOISE
 from cleave_scripts.results.command_line import counted
-from cleave_scripts.table.formats import CELL_HELP, GAP, WAITED, scene_notes
+from cleave_scripts.table.formats import CELL_HELP, GAP, WAITED, combinations, scene_notes
 
 SIGNS = {
     REPRODUCED: ("yes", "✓"),
@@ -34,10 +34,9 @@ def table1(tables):
         f'{counted(table.steps, "measured step")}, {counted(table.threads, "thread")}</small></th>'
         for table in tables)
     names = "".join('<th class="group">ours, ms</th><th>paper, ms</th><th>ratio</th>' for _ in tables)
-    combinations = dict.fromkeys((cell.partitioner, cell.refiner) for table in tables for cell in table.cells)
     body = []
     previous = None
-    for combination in combinations:
+    for combination in combinations(tables):
         cells = "".join(_table1_cells(table, combination) for table in tables)
         css = ' class="first"' if combination[0] != previous else ""
         previous = combination[0]
@@ -57,7 +56,7 @@ def table1(tables):
 
 
 def chip(partitioner):
-    return f'<span class="chip" style="background:{style.color(partitioner)}"></span>'
+    return f'<span class="chip" style="background:{looks.color(partitioner)}"></span>'
 
 
 def _table1_cells(table, combination):

@@ -6,6 +6,7 @@ from cleave_scripts.figures.choose import title
 from cleave_scripts.figures.table_html import chip, table1, verdict_table
 from cleave_scripts.figures.tree import NoData
 from cleave_scripts.figures.verdicts import as_frame
+from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.manifest import machine
 from cleave_scripts.results.paper import load_paper_table1
@@ -29,7 +30,8 @@ def scene_tables(data):
         try:
             if absent:
                 raise NoData(f"column {', '.join(absent)} is missing")
-            tables += build_tables(rows, load_paper_table1())
+            setup = setup_columns(*(block.experiment.manifest for block in group))
+            tables += build_tables(rows, load_paper_table1(), setup=setup)
         except (NoData, ResultError) as reason:
             faults.append(f"{title(scene)}, {reason}")
     return tables, faults

@@ -4,10 +4,11 @@ import statistics
 
 import matplotlib.lines
 
-from cleave_scripts.figures import style
+from cleave_scripts.figures import looks, style
 from cleave_scripts.figures.choose import first_runs, provenance, scenes_with, title
 
 BAR_WIDTH = 0.8
+MOST_LETTERS = 40  # of names side by side below a panel; more stand aslant
 HIGHEST_BAR = 3  # medians of a panel's means; higher bars are cut
 
 MEDIAN = {
@@ -29,7 +30,7 @@ def draw(data):
     for ax, (scene, rows) in zip(axes, scenes.items()):
         ax.set_title(title(scene))
         _panel(ax, rows, first_runs(data.main[scene]))
-    refiners = style.refiners_in(name for rows in scenes.values() for name in rows["refiner"])
+    refiners = looks.refiners_in(name for rows in scenes.values() for name in rows["refiner"])
     median = matplotlib.lines.Line2D([], [], **MEDIAN, linestyle="none", label="median, quartiles")
     style.legend_above(figure, [*style.refiner_patches(refiners), median], columns=5)
     caption = (
@@ -43,7 +44,7 @@ def draw(data):
 
 def _panel(ax, rows, all_rows):
     """rows: with status ok; all_rows: also the failed ones, which get a mark in place of a bar."""
-    partitioners, refiners = style.partitioners_in(all_rows["partitioner"]), style.refiners_in(
+    partitioners, refiners = looks.partitioners_in(all_rows["partitioner"]), looks.refiners_in(
         all_rows["refiner"])
     width = BAR_WIDTH / len(refiners)
     times = dict(list(rows.groupby(["partitioner", "refiner"])["t_s_ms"]))
@@ -74,7 +75,8 @@ def _panel(ax, rows, all_rows):
                     va="bottom",
                     fontsize=6.5,
                     color=style.MUTED)
-    ax.set_xticks(range(len(partitioners)), partitioners)
+    crowded = sum(map(len, partitioners)) > MOST_LETTERS
+    ax.set_xticks(range(len(partitioners)), partitioners, rotation=30 * crowded, ha="right" if crowded else "center")
     ax.tick_params(axis="x", length=0)
     ax.grid(axis="x", visible=False)
     ax.set_ylabel("$t_s$ per step, ms")
@@ -82,7 +84,7 @@ def _panel(ax, rows, all_rows):
 
 def _bar(ax, x, width, name, times, marked):
     lower, median, upper = times.quantile([0.25, 0.5, 0.75])
-    ax.bar(x, times.mean(), 0.92 * width, **style.bar_look(*name))
+    ax.bar(x, times.mean(), 0.92 * width, **looks.bar_look(*name))
     ax.vlines(x, lower, upper, color=style.INK, linewidth=0.9)
     ax.plot(x, median, **MEDIAN)
     if marked:

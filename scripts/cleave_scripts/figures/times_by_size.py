@@ -4,11 +4,13 @@ import math
 
 import numpy
 
-from cleave_scripts.figures import style
+from cleave_scripts.figures import looks, style
 from cleave_scripts.figures.choose import provenance, scenes_with
 from cleave_scripts.figures.tree import NoData
+from cleave_scripts.results.paper import PAPER
 
-SCENE = "rock_pile"
+SCENE = PAPER["figure4"]["scene"]
+SIZES = ("bodies", "scene_options")  # what differs between the sizes
 
 
 @dataclasses.dataclass
@@ -39,7 +41,7 @@ def sizes(blocks, solver):
         part = block.of_solver(solver) if block.scene == SCENE and "bodies" in block.rows else None
         if part is None or not part.rows["bodies"].notna().any():
             continue
-        setup = frozenset(entry for entry in part.setup if entry[0] != "bodies")
+        setup = frozenset(entry for entry in part.setup if entry[0] not in SIZES)
         family = families.setdefault((setup, part.threads, part.label), {})
         family.setdefault(int(part.rows["bodies"].iloc[0]), []).append(part)
     if not families:
@@ -54,7 +56,7 @@ def draw(data):
     groups = sizes(data.blocks, data.solver)
     scenes, gaps = scenes_with({f"{SCENE} {size}": group for size, group in groups.items()}, "t_s_ms")
     rows = {size: scenes[f"{SCENE} {size}"] for size in groups if f"{SCENE} {size}" in scenes}
-    names = style.partitioners_in(name for frame in rows.values() for name in frame["partitioner"])
+    names = looks.partitioners_in(name for frame in rows.values() for name in frame["partitioner"])
     figure, axes = style.panels(len(names), 3, 3.0, sharey=True)
     for ax, partitioner in zip(axes, names):
         _panel(ax, partitioner, rows)
@@ -68,10 +70,10 @@ def draw(data):
 
 
 def _panel(ax, partitioner, rows):
-    refiners = style.refiners_in(
+    refiners = looks.refiners_in(
         name for frame in rows.values() for name in frame.loc[frame["partitioner"] == partitioner, "refiner"])
     for index, refiner in enumerate(refiners):
-        look = style.line_look(partitioner, refiner)
+        look = looks.line_look(partitioner, refiner)
         times = {
             size: frame.loc[(frame["partitioner"] == partitioner) & (frame["refiner"] == refiner), "t_s_ms"]
             for size, frame in rows.items()

@@ -1,22 +1,31 @@
-"""Figure 5 of the paper: t_s of every measured step on Log Tower, mindp with each refiner, peaks marked."""
-from cleave_scripts.figures import style
+"""Figure 5 of the paper: t_s of every measured step on Log Tower, one partitioner with each refiner, peaks marked."""
+from cleave_scripts.figures import looks, style
 from cleave_scripts.figures.choose import first_runs, most_steps, provenance, title
 from cleave_scripts.figures.tree import need
+from cleave_scripts.results.paper import PAPER
 
-SCENE, PARTITIONER = "log_tower", "mindp"
+SCENE = PAPER["figure5"]["scene"]
 
 
 def longest_runs(data):
     """The blocks of the run that measured most steps; more than one where it was repeated."""
-    return most_steps(data.blocks, SCENE, data.solver, PARTITIONER)
+    return most_steps(data.blocks, SCENE, data.solver, _partitioner(data))
+
+
+def _partitioner(data):
+    """The paper's; where it was not run on the scene, the first that was."""
+    parts = [part for block in data.blocks if block.scene == SCENE and (part := block.of_solver(data.solver)) is not None]
+    names = looks.partitioners_in(name for part in parts for name in part.rows["partitioner"])
+    of_paper = PAPER["figure5"]["partitioner"]
+    return of_paper if of_paper in names or not names else names[0]
 
 
 def draw(data):
-    blocks = longest_runs(data)
+    blocks, partitioner = longest_runs(data), _partitioner(data)
     measured = first_runs(blocks)
-    measured = measured[measured["partitioner"] == PARTITIONER]
+    measured = measured[measured["partitioner"] == partitioner]
     rows = need(measured[measured["status"] == "ok"], "step", "t_s_ms")
-    refiners = style.refiners_in(rows["refiner"])
+    refiners = looks.refiners_in(rows["refiner"])
     # Over all measured steps, so that a failed one leaves a gap in the curve.
     steps = sorted(measured["step"].dropna().unique())
     curves = {
@@ -32,19 +41,19 @@ def draw(data):
     for ax, (refiner, curve) in zip(axes.flat, curves.items()):
         if refiner != refiners[0]:
             ax.fill_between(steps, curves[refiners[0]], color=style.GRID, linewidth=0)
-        _curve(ax, refiner, curve)
+        _curve(ax, partitioner, refiner, curve)
     axes.flat[0].set_ylim(0, 1.15 * max(curve.max() for curve in curves.values()) or 1)
     axes.flat[-1].set(xlabel="step", xlim=(min(0, steps[0]), steps[-1] + 1))
     failed = " Crosses: steps without a row that is ok." if any(
         curve.isna().any() for curve in curves.values()) else ""
     return figure, (
-        f"Time t_s of each measured step of {title(SCENE)}, partitioner {PARTITIONER} with each refiner. "
-        f"Triangles mark the highest peak, the grey area is {PARTITIONER} + {refiners[0]} again.{failed} " +
+        f"Time t_s of each measured step of {title(SCENE)}, partitioner {partitioner} with each refiner. "
+        f"Triangles mark the highest peak, the grey area is {partitioner} + {refiners[0]} again.{failed} " +
         provenance({title(SCENE): blocks}))
 
 
-def _curve(ax, refiner, curve):
-    look = style.line_look(PARTITIONER, refiner)
+def _curve(ax, partitioner, refiner, curve):
+    look = looks.line_look(partitioner, refiner)
     few = len(curve) <= 80
     ax.plot(curve.index,
             curve,
@@ -62,7 +71,7 @@ def _curve(ax, refiner, curve):
                 va="bottom",
                 fontsize=8,
                 annotation_clip=False)
-    ax.set_title(f"{PARTITIONER} + {refiner}")
+    ax.set_title(f"{partitioner} + {refiner}")
     ax.set_title(
         f"median {style.short(curve.median())} ms, peak {style.short(curve[peak])} ms at step {peak:.0f}",
         loc="right",

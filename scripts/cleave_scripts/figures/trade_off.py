@@ -3,10 +3,10 @@
 import numpy
 import pandas
 
-from cleave_scripts.figures import style
+from cleave_scripts.figures import looks, style
 from cleave_scripts.figures.choose import provenance
 from cleave_scripts.figures.labels import Label, place
-from cleave_scripts.figures.solver_families import count_text, families, full_name, solver_of
+from cleave_scripts.figures.solver_labels import count_text, families, full_names, solver_of
 from cleave_scripts.figures.solver_groups import MOST_PANELS, groups, of_many_solvers, shared_rows
 from cleave_scripts.figures.tree import NoData
 from cleave_scripts.results.steps import EXACT_LIMIT
@@ -34,7 +34,8 @@ def points(parts):
         f"{name}_{quantile}": grouped[name].quantile(quantile) for name in ("time", "residual")
         for quantile in (0.25, 0.5, 0.75)
     }
-    return pandas.DataFrame({**table, "accepted": grouped["accepted"].mean()}).reset_index()
+    more = {"accepted": grouped["accepted"].mean(), "parameters": grouped["parameters"].first()}
+    return pandas.DataFrame(table | more).reset_index()
 
 
 def draw(data):
@@ -95,7 +96,7 @@ def _layout(counts):
 
 def _scatter(ax, table):
     for _, row in table.iterrows():
-        look = style.solver_look(solver_of(row["label"]))
+        look = looks.solver_look(solver_of(row["label"]))
         line = {"color": look["color"], "linewidth": 0.7, "alpha": 0.6}
         ax.hlines(row["residual_0.5"], row["time_0.25"], row["time_0.75"], **line)
         ax.vlines(row["time_0.5"], row["residual_0.25"], row["residual_0.75"], **line)
@@ -103,7 +104,7 @@ def _scatter(ax, table):
     for solver, family in families(table).items():
         ax.plot(family["time_0.5"],
                 family["residual_0.5"],
-                color=style.solver_look(solver)["color"],
+                color=looks.solver_look(solver)["color"],
                 linewidth=0.9,
                 zorder=1.5)
     ax.step(*front(table), where="post", color=style.GRID, linewidth=3, zorder=1)
@@ -124,9 +125,9 @@ def name_points(ax, table):
     ax.set(xlim=ax.get_xlim(), ylim=ax.get_ylim())
     names, joined = [], families(table)
     for solver, family in joined.items():
-        color = style.readable(style.solver_look(solver)["color"])
+        color = looks.readable(looks.solver_look(solver)["color"])
         for index, (_, row) in enumerate(family.iterrows()):
-            text = count_text(row["label"], with_unit=index == 0)
+            text = count_text(row, with_unit=index == 0)
             names.append(Label(text, (row["time_0.5"], row["residual_0.5"]), color))
     alone = table[~table["label"].map(solver_of).isin(joined)]
     names = [*_names_of_clusters(ax, alone), *names]
@@ -160,7 +161,7 @@ def _names_of_clusters(ax, table):
 def _strip(ax, table):
     """The times again, a line a solver."""
     labels = list(table.groupby("label")["time_0.5"].min().sort_values().index)
-    names = []
+    names, written = [], full_names(table)
     for y, label in enumerate(labels):
         rows = table[table["label"] == label]
         for index, (_, row) in enumerate(rows.iterrows()):
@@ -169,7 +170,7 @@ def _strip(ax, table):
             ax.plot(row["time_0.5"], place_y, **_mark(row), markersize=4.5)
         best = rows.loc[rows["time_0.5"].idxmin()]
         ending = "" if len(rows) == 1 else f" ({best['partitioner']} {best['refiner']})"
-        names.append(full_name(label) + ending)
+        names.append(written[label] + ending)
     ax.set_yticks(range(len(labels)), names, fontsize=7)
     ax.set_ylim(len(labels) - 0.4, -0.6)
     ax.tick_params(axis="y", length=0)
@@ -177,7 +178,7 @@ def _strip(ax, table):
 
 
 def _mark(row):
-    look = style.solver_look(solver_of(row["label"]))
+    look = looks.solver_look(solver_of(row["label"]))
     return {
         **look, "linestyle": "none",
         "markeredgecolor": look["color"],

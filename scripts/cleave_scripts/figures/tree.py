@@ -5,20 +5,21 @@ import pathlib
 
 import pandas
 
+from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.manifest import load_manifest
 from cleave_scripts.results.steps import Row, load_steps
-from cleave_scripts.table.timing_table import NEEDED, READ_TOO, SAME_IN_A_SCENE, SAME_SOLVER, SAME_WORLD
+from cleave_scripts.table.timing_table import NEEDED, READ_TOO
 
 REQUIRED = ("scene", "step", "partitioner", "refiner", "solver", "status")
 TEXT_COLUMNS = ("run_id", "scene", "partitioner", "refiner", "solver", "strategy", "kernel", "friction",
                 "status", "status_reason", "auto_reason", "problem_hash", "solution_hash", "state_hash",
                 "problem_file")
-TABLE_COLUMNS = {*NEEDED, *SAME_IN_A_SCENE, *SAME_SOLVER, *SAME_WORLD, *READ_TOO}
+TABLE_COLUMNS = (*NEEDED, *READ_TOO)
 NUMBERS = ("t_", "factor", "interface_", "residual_", "part_", "rows", "bodies", "step", "seed", "threads",
            "repeat_count")  # what columns begin with that are numbers even where no value is one
 NOT_MEASURED = ("", "-", "nan", "inf", "-inf")
-PARTS = ("options", "build", "machine", "result")  # of a manifest, each an object
+PARTS = ("options", "option_about", "build", "machine", "result")  # of a manifest, each an object
 
 
 class NoData(Exception):
@@ -81,9 +82,10 @@ def _read_experiment(path, tree):
     name = str(path.parent.relative_to(tree.directory))
     if len(kept) < len(frame):
         tree.messages.append(f"{path}: {len(frame) - len(kept)} rows before --skip are left out")
+    columns = (*TABLE_COLUMNS, *setup_columns(manifest))
     table_rows = [
-        Row({column: rows[index][column] for column in TABLE_COLUMNS if column in rows[index]}, path,
-            rows[index].line) for index in kept.index
+        Row({column: rows[index][column] for column in columns if column in rows[index]}, path, rows[index].line)
+        for index in kept.index
     ]
     return Experiment(name, kept.reset_index(drop=True), table_rows, manifest) if len(kept) else None
 

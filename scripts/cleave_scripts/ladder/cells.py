@@ -13,6 +13,7 @@ from cleave_scripts.ladder import rungs
 from cleave_scripts.ladder.rungs import ENERGY_LIMIT, HEIGHT_LIMIT_M, NAN, OVERSHOOT, PENETRATION_LIMIT_M, SOLVERS
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.manifest import load_manifest
+from cleave_scripts.results.paper import PLAIN
 from cleave_scripts.results.run_key import build_key, difference
 from cleave_scripts.results.steps import load_steps
 
@@ -38,7 +39,7 @@ class Cell:
             text for name, value in self.rung.settings(self.value).items() for text in (f"--{name}", value)
         ]
         return ("run", "--scene", self.rung.scene, *options, "--steps", str(self.steps), "--repeats", "1",
-                "--partitioner", "mindp", "--refiner", "none", *SOLVERS[self.solver])
+                "--partitioner", PLAIN[0], "--refiner", PLAIN[1], *SOLVERS[self.solver])
 
 
 class Interrupted(Exception):

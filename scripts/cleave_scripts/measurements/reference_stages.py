@@ -1,7 +1,8 @@
 """The stages of scripts/reference: what each runs, how long that takes, and which of its files are kept in results/."""
 import dataclasses
 
-SCENES = ("chain_drop", "log_tower", "rock_pile", "large_rock_pile")
+from cleave_scripts.results.paper import SCENES
+
 REPORT = "report"  # one directory for all that scripts/report draws
 REPORT_RUNS = ("scaling", "one_thread", "schur_bodies", "solvers", "every_step")
 RUN_FILES = ("manifest.json", "steps.csv")

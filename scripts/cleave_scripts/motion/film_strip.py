@@ -6,12 +6,11 @@ import numpy
 
 from cleave_scripts.motion.looks import look_of
 from cleave_scripts.motion.part_colouring import colour_sequence
-from cleave_scripts.motion.picture_sheets import cells_of, show, side_by_side, title_of
+from cleave_scripts.motion.picture_sheets import best_cell, cells_of, show, side_by_side, title_of
 from cleave_scripts.motion.pictures import Stage, picture_of_bodies
 
 PICTURE_IN = 2.0  # wide
 ASPECT = 4 / 3
-CELL = ("mix", "fm")
 
 
 def frames_of(motion, every):
@@ -35,11 +34,11 @@ def colours_of(motion, frames, combination):
     return [colours.get(frame) for frame in frames]
 
 
-def draw_film_strip(motions, options):
+def draw(motions, options):
     strips, jobs = [], []
     for motion in motions:
         frames = frames_of(motion, options.every)
-        combination = cells_of(motion).get(CELL) if options.colour == "part" else None
+        combination = best_cell(cells_of(motion)) if options.colour == "part" else None
         colours = [None] * len(frames) if combination is None else colours_of(motion, frames, combination)
         stage = stage_of(motion, frames, round(options.width / 3))
         strips.append((motion, frames))

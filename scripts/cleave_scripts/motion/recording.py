@@ -5,6 +5,7 @@ ResultError, one line that names the file.
 """
 import dataclasses
 import pathlib
+import re
 
 import h5py
 import numpy
@@ -14,6 +15,7 @@ from cleave_scripts.results.errors import ResultError
 
 FILE_NAME = "motion.h5"
 SCHEMA = "cleave-motion-1"
+SEPARATOR = re.compile(r"(?<!\de)\+")  # of the names of a combination; that of 1e+06 is none
 NO_PART = 65535
 # Arrays with one entry a measured step and combination, and what an entry is besides.
 PER_COMBINATION = {
@@ -102,7 +104,7 @@ def _read(path, file):
         raise ResultError(f"{path}: schema = {schema}, expected {SCHEMA}")
     names = ("run_id", "scene", "seed", "h_s", "steps", "measure_every", "combinations")
     attributes = {name: _attribute(path, file, name) for name in names}
-    combinations = [tuple(label.split("+")) for label in attributes["combinations"].split(",")]
+    combinations = [tuple(SEPARATOR.split(label)) for label in attributes["combinations"].split(",")]
     mass_kg = _array(path, file, "mass")
     n = len(mass_kg)
     step = _array(path, file, "step")

@@ -10,7 +10,6 @@ import pathlib
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.manifest import load_manifest
 
-NO_PARTITIONER = "-"  # of a solver that works on the whole system
 
 # The judge's limit of an exact answer (kExactLimit in solver/step_problem.h): residuals up to this many times
 # max(1, largest free velocity) m/s.

@@ -25,11 +25,13 @@ def format_text(tables, header):
     lines = ["Table 1: mean ms a step; t_s solve, t_pr partition + refine", *header, MARK_HELP]
     for table in tables:
         steps, threads = counted(table.steps, "measured step"), counted(table.threads, "thread")
+        widths = _name_widths(table.cells)
+        margin = " " * sum(widths)
         times, ratios = f"{'t_s':>9}{'t_pr':>9}{'total':>10}  |", f"{'t_s':>8}{'t_pr':>8}{'total':>8}  |"
         lines += ["", f"{table.title}: {steps}, solver {table.solver}, {threads}"]
-        lines.append(f"{'':14}|{'ours, ms':^29} |{'paper, ms':^29} |{'ours / paper':^25} |")
-        lines.append(f"{'':14}|{times}{times}{ratios}")
-        lines += [_text_row(cell) for cell in table.cells]
+        lines.append(f"{margin}|{'ours, ms':^29} |{'paper, ms':^29} |{'ours / paper':^25} |")
+        lines.append(f"{margin}|{times}{times}{ratios}")
+        lines += [_text_row(cell, *widths) for cell in table.cells]
         lines += _remarks(table.cells)
         lines += _wrapped(scene_notes([table]))
     return "\n".join(lines) + "\n"
@@ -64,9 +66,14 @@ def scene_notes(tables):
     return notes
 
 
-def _text_row(cell):
+def _name_widths(cells):
+    """Of the columns of partitioners and refiners."""
+    return [max(7, 1 + max(len(getattr(cell, name)) for cell in cells)) for name in ("partitioner", "refiner")]
+
+
+def _text_row(cell, partitioner_width, refiner_width):
     ratios = "".join(f"{format_ratio(ratio):>8}" for ratio in cell.ours / cell.paper)
-    return (f"{cell.partitioner:<7}{cell.refiner:<7}|" + _text_times(cell.ours, cell.ours_lowest, 3) +
+    return (f"{cell.partitioner:<{partitioner_width}}{cell.refiner:<{refiner_width}}|" + _text_times(cell.ours, cell.ours_lowest, 3) +
             _text_times(cell.paper, cell.paper_lowest, 1) + f"{ratios}  |" + ("!" if cell.remark else "") +
             _waited(cell))
 
@@ -145,7 +152,7 @@ def format_latex(tables, header):
         "\\midrule"
     ]
     for cells in _across(tables):
-        entries = [f"{cells[0].partitioner} {cells[0].refiner}"]
+        entries = [_latex(f"{cells[0].partitioner} {cells[0].refiner}")]
         for cell in cells:
             ours, paper = _pair(cell.ours, 2, 3), _pair(cell.paper, 1, 1)
             entries += [
@@ -172,9 +179,16 @@ def _latex_bold(text, bold):
     return f"\\textbf{{{text}}}" if bold else text
 
 
+def combinations(tables):
+    """All combinations of the tables; one that only some have stands beside its partitioner's others."""
+    names = dict.fromkeys((cell.partitioner, cell.refiner) for table in tables for cell in table.cells)
+    partitioners = list(dict.fromkeys(partitioner for partitioner, _ in names))
+    return sorted(names, key=lambda name: partitioners.index(name[0]))
+
+
 def _across(tables):
     """For every combination its cells, one a scene."""
-    names = list(dict.fromkeys((cell.partitioner, cell.refiner) for table in tables for cell in table.cells))
+    names = combinations(tables)
     by_table = [{(cell.partitioner, cell.refiner): cell for cell in table.cells} for table in tables]
     return [[cells.get(name) or Cell(*name) for cells in by_table] for name in names]
 

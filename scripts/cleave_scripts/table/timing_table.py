@@ -3,29 +3,21 @@
 t_s solves, t_pr partitions and refines, both in ms; total = t_s + t_pr.
 """
 import dataclasses
+import itertools
 import math
 
+from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.errors import ResultError
-from cleave_scripts.results.paper import PARTITIONERS, REFINERS, SCENES
-from cleave_scripts.results.steps import NO_PARTITIONER
+from cleave_scripts.results.names import NO_PARTITIONER, in_order, said_parameters
+from cleave_scripts.results.paper import PAPER, PARTITIONERS, REFINERS, SCENES
 
 NEEDED = ("scene", "seed", "step", "partitioner", "refiner", "solver", "threads", "status", "t_s_ms",
           "t_pr_ms")
-# A mean over rows that differ in one of these would mean nothing.
-SAME_IN_A_SCENE = ("solver", "threads", "friction", "max_bodies", "tau_mr", "tau_mix", "max_growth", "dt_s",
-                   "mu", "cfm", "erp", "gravity_m_per_s2", "friction_force_n", "match_tolerance",
-                   "contact_cap", "edge_weight", "degree", "degree_scope", "as_printed", "skip_small_islands",
-                   "cold")
-# Nor over rows of a solver with other options.
-SAME_SOLVER = ("predictor_sweeps", "max_iterations", "reuse_analysis")
-# Nor over rows of other problems: another scene, or steps of a world that moved otherwise.
-SAME_WORLD = ("scene_options", "mode", "advance", "steps")
+SAME_RUN = ("solver", "threads", "steps")  # besides what the setup is
+NOT_A_PARAMETER = "-"  # the value of a column that does not apply to a row
 UNKNOWN = "unknown"  # the value of a column that a file does not have
 # What else is looked at where it is there.
 READ_TOO = ("bodies", "t_s_waiting_ms")
-# The paper's runs: bodies of each scene, and steps of all.
-PAPER_BODIES = {"chain_drop": 100, "log_tower": 201, "rock_pile": 200, "large_rock_pile": 600}
-PAPER_STEPS = 500
 MOST_WAITING = 0.05  # of t_s, for a core; above it a mean says more of the machine's other work
 
 
@@ -92,8 +84,9 @@ class SceneTable:
         return self.scene.replace("_", " ").title()
 
 
-def build_tables(rows, paper, where=()):
-    """One SceneTable a scene that has rows. where: (column, value) pairs a row must have."""
+def build_tables(rows, paper, where=(), setup=setup_columns()):
+    """One SceneTable a scene that has rows. where: (column, value) pairs a row must have; setup: columns in which rows of a
+    scene must not differ, where their names do not say why."""
     by_scene = {}
     for row in rows:
         if row["partitioner"] != NO_PARTITIONER and all(
@@ -102,7 +95,7 @@ def build_tables(rows, paper, where=()):
     if not by_scene:
         raise ResultError("no measured rows of a partitioned solver" +
                           (" that --where allows" if where else ""))
-    return [_scene_table(scene, by_scene[scene], paper) for scene in _in_order(by_scene, SCENES)]
+    return [_scene_table(scene, by_scene[scene], paper, setup) for scene in in_order(by_scene, SCENES)]
 
 
 def _value(row, column):
@@ -111,35 +104,52 @@ def _value(row, column):
     return row[column]
 
 
-def _scene_table(scene, rows, paper):
-    for column in (*SAME_IN_A_SCENE, *SAME_SOLVER, *SAME_WORLD):
-        values = sorted({row.get(column, UNKNOWN) for row in rows}, key=lambda value: (value == UNKNOWN, value))
-        if len(values) > 1:
-            raise ResultError(f"rows of {scene} mix {column} {', '.join(values)}; "
-                              f"choose one with --where {column}={values[0]}")
+def _scene_table(scene, rows, paper, setup):
+    for column in (*SAME_RUN, *setup):
+        _check_same(scene, rows, column)
     steps = {(row["seed"], row["step"]) for row in rows}
-    groups = {(partitioner, refiner): [] for partitioner in PARTITIONERS for refiner in REFINERS}
-    seen = {}
+    cells = [_cell(scene, names, mine, len(steps), paper) for names, mine in _by_combination(rows).items()]
+    _mark_lowest(scene, cells, paper)
+    return SceneTable(scene, len(steps), rows[0]["threads"], rows[0]["solver"], cells, _differences(scene, rows))
+
+
+def _check_same(scene, rows, column):
+    """A mean over rows that differ in a column of the setup would mean nothing."""
+    values = {_setup_value(row, column) for row in rows} - {None}
+    values = sorted(values, key=lambda value: (value == UNKNOWN, value))
+    if len(values) > 1:
+        raise ResultError(f"rows of {scene} mix {column} {', '.join(values)}; "
+                          f"choose one with --where {column}={values[0]}")
+
+
+def _setup_value(row, column):
+    """None where the row's names say the value, or its algorithms have no such parameter."""
+    said = said_parameters(row["partitioner"]) | said_parameters(row["refiner"])
+    value = row.get(column, UNKNOWN)
+    return None if value == NOT_A_PARAMETER or column.replace("_", "-") in said else value
+
+
+def _by_combination(rows):
+    """{(partitioner, refiner): rows}, the paper's names first, the others as they come."""
+    groups, seen = {}, {}
     for row in rows:
         key = (row["seed"], row["step"], row["partitioner"], row["refiner"])
         if key in seen:
             raise ResultError(
-                f"{row.path}, line {row.line}: step {row['step']} of {scene}, {row['partitioner']} "
+                f"{row.path}, line {row.line}: step {row['step']} of {row['scene']}, {row['partitioner']} "
                 f"{row['refiner']} stands already in {seen[key].path}, line {seen[key].line}")
         seen[key] = row
         groups.setdefault(key[2:], []).append(row)
-    cells = [_cell(scene, names, groups[names], len(steps), paper) for names in groups]
-    _mark_lowest([cell for cell in cells if cell.complete], "ours")
-    _mark_lowest(cells, "paper")
-    return SceneTable(scene, len(steps), rows[0]["threads"], rows[0]["solver"], cells,
-                      _differences(scene, rows))
+    partitioners = in_order((names[0] for names in groups), PARTITIONERS)
+    refiners = in_order((names[1] for names in groups), REFINERS)
+    return {names: groups[names] for names in itertools.product(partitioners, refiners) if names in groups}
 
 
 def _differences(scene, rows):
     """'60 steps (paper 500), 12 bodies (paper 200)'; empty for a scene that the paper does not have."""
-    if scene not in PAPER_BODIES:
+    if scene not in SCENES:
         return ""
-    wanted = (("steps", PAPER_STEPS), ("bodies", PAPER_BODIES[scene]))
+    wanted = (("steps", PAPER["steps"]), ("bodies", PAPER["bodies"][scene]))
     parts = []
     for column, paper in wanted:
         values = {row.get(column, UNKNOWN) for row in rows}
@@ -174,12 +184,10 @@ def waiting_share(rows):
     return math.fsum(row.number("t_s_waiting_ms") for row in known) / total if total > 0 else math.nan
 
 
-def _mark_lowest(cells, which):
-    totals = [getattr(cell, which).total_ms for cell in cells]
-    for cell, total in zip(cells, totals):
-        if not math.isnan(total) and total == min(value for value in totals if not math.isnan(value)):
-            setattr(cell, which + "_lowest", True)
-
-
-def _in_order(names, known):
-    return [name for name in known if name in names] + sorted(name for name in names if name not in known)
+def _mark_lowest(scene, cells, paper):
+    """The lowest total of the complete cells, and of all that the paper has of the scene."""
+    least = min((cell.ours.total_ms for cell in cells if cell.complete), default=math.nan)
+    least_of_paper = min((sum(paper[key]) for key in paper if key[0] == scene), default=math.nan)
+    for cell in cells:
+        cell.ours_lowest = cell.complete and cell.ours.total_ms == least
+        cell.paper_lowest = cell.paper.total_ms == least_of_paper
