@@ -17,7 +17,7 @@ from cleave_scripts.results.paper import COMBINATIONS
 STAND_IN = f"""#!/usr/bin/python3
 import itertools, os, pathlib, sys
 sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
-from synthetic import write_steps
+from synthetic import asked_partitioners, asked_refiners, write_steps
 words = sys.argv[1:]
 with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write(" ".join(words) + "\\n")
@@ -36,7 +36,7 @@ files = [word for word in words if word.endswith(".h5")]
 assert files and all(os.path.exists(file) for file in files), files
 threads = int(words[words.index("--threads") + 1]) if "--threads" in words else 1
 given = dict(zip(words, words[1:]))
-names = itertools.product(*(given.get(option, "-").split(",") for option in ("--partitioner", "--refiner")))
+names = itertools.product(asked_partitioners(given.get("--partitioner", "-")), asked_refiners(given.get("--refiner", "-")))
 write_steps(out, [dict(step=int(file[-9:-3]), scene="s", bodies=7, partitioner=partitioner, refiner=refiner,
                        threads=threads, rows=1200, interface_rows=50 if "whole" in words else 40,
                        status=os.environ.get("STAND_IN_STATUS", "ok"), t_s_ms=8 / threads, t_s_waiting_ms=0.25,

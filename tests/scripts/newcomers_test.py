@@ -3,7 +3,7 @@ import pathlib
 import tempfile
 import unittest
 
-from report_data import manifest, rows_of, whole_system, write_run
+from report_data import manifest, rows_of, whole_system, write_ladder, write_run
 from synthetic import matrix, run_script, write_manifest, write_steps
 
 from cleave_scripts.figures import data, looks, solver_groups, style, trade_off
@@ -85,12 +85,17 @@ class NewcomersTest(Scratch):
         self.assertEqual(len(lengths), 1)
 
     def test_every_figure_is_drawn_and_every_name_has_a_colour_of_its_own(self):
-        write_newcomers(self.directory)
+        write_newcomers(self.directory, ["log_tower", "rock_pile"])
+        write_ladder(self.directory)
+        for size in (50, 100):
+            rows = rows_of("rock_pile", (PARTITIONERS[0], *NEWCOMERS), (REFINERS[0], REFINER), bodies=size, t_s_ms=size)
+            write_run(self.directory / "scaling" / str(size), rows, bodies=size)
+        rows = rows_of("rock_pile", t_s_ms=3, solver="pivot:later", kernel="later", max_bodies=25, width="-")
+        write_steps(self.directory / "kernel", rows)
+        write_manifest(self.directory / "kernel", **newer_manifest("rock_pile", []))
         loaded = data.load(self.directory, "schur")
         for figure in FIGURES:
-            if figure.name in ("figure3", "figure5", "interface_cost", "stages", "trade_off", "speed_up"):
-                drawn, _ = figure.draw(loaded)
-                drawn.draw_without_rendering()
+            figure.draw(loaded)[0].draw_without_rendering()
         names = (*PARTITIONERS, "-", *NEWCOMERS)
         self.assertEqual(len({looks.color(name) for name in names}), len(names))
         self.assertEqual(len({looks.solver_look(name)["color"] for name in ("schur", BASELINE)}), 2)

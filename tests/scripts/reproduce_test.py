@@ -5,7 +5,7 @@ import unittest
 from stand_in import StandInCase
 from synthetic import ROOT
 
-from cleave_scripts.results.paper import PARTITIONERS, REFINERS
+from cleave_scripts.results.paper import ASKED_PARTITIONERS, ASKED_REFINERS
 
 STAND_IN = f"""#!/usr/bin/python3
 import os, pathlib, sys
@@ -37,7 +37,7 @@ class ReproduceTest(StandInCase):
         result = self.run_it()
         calls = self.calls()
         self.assertEqual(
-            calls[1], f"run --scene log_tower --partitioner {','.join(PARTITIONERS)} --refiner {','.join(REFINERS)} "
+            calls[1], f"run --scene log_tower --partitioner {ASKED_PARTITIONERS} --refiner {ASKED_REFINERS} "
             "--solver schur --steps 500 "
             f"--measure-every 50 --repeats 3 --threads 2 --seed 1 --out {self.directory}/out/log_tower "
             "--force")

@@ -9,9 +9,19 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 
-from cleave_scripts.results.paper import COMBINATIONS, SCENES  # noqa: E402
+from cleave_scripts.results.paper import (ASKED_PARTITIONERS, ASKED_REFINERS, COMBINATIONS,  # noqa: E402
+                                          PARTITIONERS, REFINERS, SCENES)
 
 STEPS = range(0, 500, 50)
+
+
+def asked_partitioners(text):
+    """The names that a stand-in for the program runs where it is asked for these."""
+    return PARTITIONERS if text == ASKED_PARTITIONERS else text.split(",")
+
+
+def asked_refiners(text):
+    return REFINERS if text == ASKED_REFINERS else text.split(",")
 
 
 def good_row(scene, step, partitioner, refiner):

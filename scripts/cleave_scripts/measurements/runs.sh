@@ -1,12 +1,10 @@
 # What scripts/reproduce, scripts/scaling and scripts/report_runs have in common: options of their runs, the
 # program, and runs that are kept once they are complete. Sourced by them; they set root before.
 
-# The sets of the paper as the program is given them, from scripts/data/paper.toml.
-paper_set() {
-  PYTHONPATH=$root/scripts /usr/bin/python3 -c \
-    "from cleave_scripts.results.paper import PAPER; print(*PAPER['$1'], sep=',')"
-}
-paper_partitioners=$(paper_set partitioners) paper_refiners=$(paper_set refiners) paper_scenes=$(paper_set bodies)
+# The sets of the paper as the program is asked for them, and its scenes, from scripts/data/paper.toml.
+read -r paper_partitioners paper_refiners paper_scenes < <(PYTHONPATH=$root/scripts /usr/bin/python3 -c "
+from cleave_scripts.results import paper
+print(paper.ASKED_PARTITIONERS, paper.ASKED_REFINERS, ','.join(paper.SCENES))")
 
 steps=500 measure_every='' repeats=3 threads=2 seed=1 force=no
 

@@ -10,6 +10,8 @@ PAPER = tomllib.loads((DATA / "paper.toml").read_text(encoding="utf-8"))
 SCENES = tuple(PAPER["bodies"])
 PARTITIONERS, REFINERS = tuple(PAPER["partitioners"]), tuple(PAPER["refiners"])
 COMBINATIONS = tuple((partitioner, refiner) for partitioner in PARTITIONERS for refiner in REFINERS)
+# How the program is asked for these sets.
+ASKED_PARTITIONERS, ASKED_REFINERS = ",".join(PARTITIONERS), ",".join(REFINERS)
 PLAIN, BEST = tuple(PAPER["plain"]), tuple(PAPER["best"])
 
 
