@@ -95,7 +95,11 @@ class NewcomersTest(Scratch):
         write_manifest(self.directory / "kernel", **newer_manifest("rock_pile", []))
         loaded = data.load(self.directory, "schur")
         for figure in FIGURES:
-            figure.draw(loaded)[0].draw_without_rendering()
+            drawn, _ = figure.draw(loaded)
+            drawn.draw_without_rendering()
+            for legend in drawn.legends:
+                box, whole = legend.get_window_extent(), drawn.bbox
+                self.assertTrue(whole.x0 <= box.x0 and box.x1 <= whole.x1, f"{figure.name}: the legend is cut")
         names = (*PARTITIONERS, "-", *NEWCOMERS)
         self.assertEqual(len({looks.color(name) for name in names}), len(names))
         self.assertEqual(len({looks.solver_look(name)["color"] for name in ("schur", BASELINE)}), 2)

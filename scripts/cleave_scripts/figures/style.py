@@ -1,4 +1,6 @@
 """One page layout for all figures: sizes, lines, legends, and the files they are saved to; colours are in looks.py."""
+import itertools
+
 import matplotlib
 
 matplotlib.use("Agg")
@@ -91,9 +93,11 @@ def legend_above(figure, handles, columns):
 
 
 def _legend_width_in(lengths, columns):
-    """About how wide a legend gets; lengths: letters of its entries, which go down the columns one by one."""
-    rows = -(-len(lengths) // columns)
-    return sum(0.062 * max(lengths[first:first + rows]) + 0.5 for first in range(0, len(lengths), rows))
+    """About how wide a legend gets; lengths: letters of its entries, which go down the columns one by one, the first of
+    them longer where the entries do not go into equal ones."""
+    rows, longer = divmod(len(lengths), columns)
+    ends = [0, *itertools.accumulate(rows + (column < longer) for column in range(columns))]
+    return sum(0.062 * max(lengths[first:last]) + 0.5 for first, last in itertools.pairwise(ends))
 
 
 def short(value):
