@@ -10,12 +10,12 @@ from unittest import mock
 
 import motion_data
 import numpy
-from synthetic import SCRIPTS, run_script
+from synthetic import run_script
 
-from cleave_scripts.viewer import page as viewer
 from cleave_scripts.motion.colours import EDGE_CASING, PART_COLOURS
 from cleave_scripts.motion.recording import NO_PART, load_motion
 from cleave_scripts.results.errors import ResultError
+from cleave_scripts.viewer import page as viewer
 
 TYPES = {"u8": "u1", "u16": "<u2", "i16": "<i2", "i32": "<i4", "f32": "<f4"}
 

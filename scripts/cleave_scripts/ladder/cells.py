@@ -3,7 +3,6 @@ import dataclasses
 import hashlib
 import json
 import math
-import os
 import pathlib
 import statistics
 import subprocess
