@@ -215,6 +215,7 @@ class AboutTest(unittest.TestCase):
         self.assertEqual(setup_columns(newer), ("cfm", "max_bodies", "width"))
         self.assertEqual(setup_columns(newer, about=("partition",)), ("max_bodies", "width"))
         self.assertEqual(strategy_and_kernel(newer, "x"), ("newton", "k"))
+        self.assertEqual(solver_parameters(newer, "pgs@sweeps=7"), ({"sweeps": "7"}, {}))
 
 
 if __name__ == "__main__":

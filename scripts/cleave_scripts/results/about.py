@@ -32,9 +32,12 @@ def setup_columns(*manifests, about=("problem", "partition", "solver")):
 
 def solver_parameters(manifest, text):
     """({parameter: value}, {parameter: default}) of a solver that rows call `text`."""
-    for entry in _entries(manifest, "algorithms", "parameters"):
-        if (entry.get("kind"), entry.get("text")) == ("solver", text):
+    told = [entry for entry in _entries(manifest, "algorithms", "parameters") if entry.get("kind") == "solver"]
+    for entry in told:
+        if entry.get("text") == text:
             return _texts(entry["parameters"]), _texts(entry.get("defaults", {}))
+    if told:
+        return said_parameters(text), {}
     defaults = OLDER["parameters"] | OLDER["parameters_of"].get(base_name(text), {})
     options = manifest.get("options", {})
     return {name: str(options.get(name, value)) for name, value in defaults.items()} | said_parameters(text), defaults
