@@ -139,7 +139,8 @@ class PictureTest(Scratch):
         with unittest.mock.patch.object(figure2, "_pictures", return_value={}):
             figure = figure2.draw([motion], argparse.Namespace(width=100))
         self.addCleanup(figure2.pyplot.close, figure)
-        self.assertEqual([axes.get_title() for axes in figure.axes[:3]], ["mix", "stripes@width=5", "mr@tau-mr=1e+06"])
+        where = matplotlib.rcParams["axes.titlelocation"]
+        self.assertEqual([axes.get_title(where) for axes in figure.axes[:3]], ["mix", "stripes@width=5", "mr@tau-mr=1e+06"])
         self.assertEqual(len(figure.axes), 6)
 
     def test_what_povray_does_not_understand_is_an_error(self):
