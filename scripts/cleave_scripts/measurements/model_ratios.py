@@ -4,7 +4,8 @@ import dataclasses
 import statistics
 
 from cleave_scripts.results.errors import ResultError
-from cleave_scripts.table.timing_table import MOST_WAITING, waiting_share
+from cleave_scripts.table.cells import MOST_WAITING
+from cleave_scripts.table.timing_table import waiting_share
 
 KEY = ("problem_hash", "partitioner", "refiner", "solver")
 MODEL = "t_s_model_p2_ms"

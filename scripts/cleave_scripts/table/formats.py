@@ -5,20 +5,11 @@ import math
 import textwrap
 
 from cleave_scripts.results.command_line import counted
-from cleave_scripts.table.timing_table import MOST_WAITING, Cell
+from cleave_scripts.table.cell_texts import (CELL_HELP, WAITED, across, format_number, format_ratio, pair,
+                                             scene_notes)
+from cleave_scripts.table.latex import format_latex
 
-GAP = "-"
 MARK_HELP = "* lowest t_s + t_pr of a scene among combinations without a failed or missing step."
-WAITED = "‡"
-CELL_HELP = "t_s solve, t_pr partition + refine, mean ms a step; ratio = ours / paper of t_s + t_pr."
-
-
-def format_number(value, decimals=2):
-    return GAP if math.isnan(value) else f"{value:.{decimals}f}"
-
-
-def format_ratio(value):
-    return GAP if math.isnan(value) else f"{value:#.3g}"
 
 
 def format_text(tables, header):
@@ -48,22 +39,6 @@ def _remarks(cells):
 
 def _wrapped(texts):
     return [line for text in texts for line in textwrap.wrap(text, 105, subsequent_indent="  ")]
-
-
-def scene_notes(tables):
-    """What has to be known before comparing: runs of another size than the paper's, and disturbed ones."""
-    notes = [
-        f"{table.title} is not the paper's run: {table.differs}; its ratios compare different problems."
-        for table in tables if table.differs
-    ]
-    waited = [
-        f"{table.title} {cell.partitioner} {cell.refiner} {100 * cell.waiting:.0f} %" for table in tables
-        for cell in table.cells if cell.waited
-    ]
-    if waited:
-        notes.append(f"{WAITED} The solves waited more than {100 * MOST_WAITING:.0f} % of t_s for a core, so "
-                     f"other programs are in these times: {', '.join(waited)}.")
-    return notes
 
 
 def _name_widths(cells):
@@ -119,11 +94,11 @@ def format_markdown(tables, header):
         "| | " + " | ".join(f"{table.title}, {counted(table.steps, 'step')}" for table in tables) + " |",
         "|---|" + "---|" * len(tables)
     ]
-    for cells in _across(tables):
+    for cells in across(tables):
         entries = []
         for cell in cells:
-            ours = _pair(cell.ours, 2, 3) + _waited(cell) + (f" ({cell.remark})" if cell.remark else "")
-            paper = _pair(cell.paper, 1, 1)
+            ours = pair(cell.ours, 2, 3) + _waited(cell) + (f" ({cell.remark})" if cell.remark else "")
+            paper = pair(cell.paper, 1, 1)
             entries.append(f"{_bold(ours, cell.ours_lowest)} (paper {_bold(paper, cell.paper_lowest)}), "
                            f"×{format_ratio((cell.ours / cell.paper)[2])}")
         lines.append(f"| {cells[0].partitioner} {cells[0].refiner} | " + " | ".join(entries) + " |")
@@ -133,64 +108,6 @@ def format_markdown(tables, header):
 
 def _bold(text, bold):
     return f"**{text}**" if bold else text
-
-
-def _pair(times, t_s_decimals, t_pr_decimals):
-    if math.isnan(times.total_ms):
-        return GAP
-    return f"{times.t_s_ms:.{t_s_decimals}f} + {times.t_pr_ms:.{t_pr_decimals}f}"
-
-
-def format_latex(tables, header):
-    """A booktabs table* in the order of the Markdown one; needs \\usepackage{booktabs}."""
-    groups = "".join(" & \\multicolumn{3}{c}{" + _latex(table.title) + "}" for table in tables)
-    rules = "".join(f"\\cmidrule(lr){{{3 * index + 2}-{3 * index + 4}}}" for index in range(len(tables)))
-    lines = [
-        "% needs \\usepackage{booktabs}", "\\begin{table*}", "\\centering\\footnotesize",
-        "\\begin{tabular}{l" + "rrr" * len(tables) + "}", "\\toprule",
-        groups.lstrip() + " \\\\", rules, "combination" + " & ours & paper & ratio" * len(tables) + " \\\\",
-        "\\midrule"
-    ]
-    for cells in _across(tables):
-        entries = [_latex(f"{cells[0].partitioner} {cells[0].refiner}")]
-        for cell in cells:
-            ours, paper = _pair(cell.ours, 2, 3), _pair(cell.paper, 1, 1)
-            entries += [
-                _latex_bold(ours, cell.ours_lowest) + ("$^\\dagger$" if cell.remark else "") +
-                ("$^\\ddagger$" if cell.waited else ""),
-                _latex_bold(paper, cell.paper_lowest),
-                format_ratio((cell.ours / cell.paper)[2])
-            ]
-        lines.append(" & ".join(entries) + " \\\\")
-    remarks = ["$^\\dagger$ steps failed or missing, not in the mean."] if any(
-        cell.remark for table in tables for cell in table.cells) else []
-    cell_help = CELL_HELP.replace("t_s", "$t_s$").replace("t_pr", "$t_{pr}$")
-    caption = " ".join([cell_help, *map(_latex, [*header, *scene_notes(tables)]), *remarks])
-    lines += ["\\bottomrule", "\\end{tabular}", "\\caption{" + caption + "}", "\\end{table*}"]
-    return "\n".join(lines) + "\n"
-
-
-def _latex(text):
-    text = "".join("\\" + letter if letter in "_%#&$" else letter for letter in text)
-    return text.replace(WAITED, "$^\\ddagger$")
-
-
-def _latex_bold(text, bold):
-    return f"\\textbf{{{text}}}" if bold else text
-
-
-def combinations(tables):
-    """All combinations of the tables; one that only some have stands beside its partitioner's others."""
-    names = dict.fromkeys((cell.partitioner, cell.refiner) for table in tables for cell in table.cells)
-    partitioners = list(dict.fromkeys(partitioner for partitioner, _ in names))
-    return sorted(names, key=lambda name: partitioners.index(name[0]))
-
-
-def _across(tables):
-    """For every combination its cells, one a scene."""
-    names = combinations(tables)
-    by_table = [{(cell.partitioner, cell.refiner): cell for cell in table.cells} for table in tables]
-    return [[cells.get(name) or Cell(*name) for cells in by_table] for name in names]
 
 
 FORMATS = {"text": format_text, "csv": format_csv, "markdown": format_markdown, "latex": format_latex}

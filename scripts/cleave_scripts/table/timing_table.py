@@ -2,7 +2,6 @@
 
 t_s solves, t_pr partitions and refines, both in ms; total = t_s + t_pr.
 """
-import dataclasses
 import itertools
 import math
 
@@ -10,6 +9,7 @@ from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.names import NO_PARTITIONER, in_order, said_parameters
 from cleave_scripts.results.paper import PAPER, PARTITIONERS, REFINERS, SCENES
+from cleave_scripts.table.cells import Cell, SceneTable, Times
 
 NEEDED = ("scene", "seed", "step", "partitioner", "refiner", "solver", "threads", "status", "t_s_ms",
           "t_pr_ms")
@@ -18,70 +18,6 @@ NOT_A_PARAMETER = "-"  # the value of a column that does not apply to a row
 UNKNOWN = "unknown"  # the value of a column that a file does not have
 # What else is looked at where it is there.
 READ_TOO = ("bodies", "t_s_waiting_ms")
-MOST_WAITING = 0.05  # of t_s, for a core; above it a mean says more of the machine's other work
-
-
-@dataclasses.dataclass
-class Times:
-    """One pair of times in ms; nan where there is none."""
-
-    t_s_ms: float = math.nan
-    t_pr_ms: float = math.nan
-
-    @property
-    def total_ms(self):
-        return self.t_s_ms + self.t_pr_ms
-
-    def __truediv__(self, other):
-        """Ratios of t_s, t_pr and total; nan where one side is missing."""
-        ours = (self.t_s_ms, self.t_pr_ms, self.total_ms)
-        theirs = (other.t_s_ms, other.t_pr_ms, other.total_ms)
-        return [a / b if b > 0 else math.nan for a, b in zip(ours, theirs)]
-
-
-@dataclasses.dataclass
-class Cell:
-    partitioner: str
-    refiner: str
-    ours: Times = dataclasses.field(default_factory=Times)
-    paper: Times = dataclasses.field(default_factory=Times)
-    ok: int = 0  # measured steps that ours is the mean of
-    failed: int = 0  # rows with another status; not in the mean
-    missing: int = 0  # steps of the scene without a row of this combination
-    waiting: float = math.nan  # share of t_s in which threads waited for a core; nan where unknown
-    ours_lowest: bool = False
-    paper_lowest: bool = False
-
-    @property
-    def complete(self):
-        return self.ok > 0 and self.failed == 0 and self.missing == 0
-
-    @property
-    def waited(self):
-        return self.waiting > MOST_WAITING
-
-    @property
-    def remark(self):
-        parts = [
-            f"{count} of {self.ok + self.failed + self.missing} steps {what}"
-            for count, what in ((self.failed, "failed"), (self.missing, "missing"))
-            if count
-        ]
-        return ", ".join(parts)
-
-
-@dataclasses.dataclass
-class SceneTable:
-    scene: str
-    steps: int  # measured
-    threads: str
-    solver: str
-    cells: list  # Cell, in the paper's order
-    differs: str = ""  # how the runs differ from the paper's in size; empty where they do not
-
-    @property
-    def title(self):
-        return self.scene.replace("_", " ").title()
 
 
 def build_tables(rows, paper, where=(), setup=setup_columns()):
