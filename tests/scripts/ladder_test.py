@@ -14,6 +14,7 @@ import unittest.mock
 from synthetic import ROOT, SCRIPTS, run_script
 
 from cleave_scripts.ladder import rungs
+from cleave_scripts.ladder.climbers import CLIMBERS, solver_options
 from cleave_scripts.ladder.cells import COLUMNS
 
 # Fails as STAND_IN says of a solver: "pgs=crash ode-step=sleep".
@@ -95,7 +96,7 @@ class LadderTest(unittest.TestCase):
     def test_every_solver_advances_a_world_of_its_own(self):
         self.ladder()
         rows, calls = self.rows(), self.calls()
-        self.assertEqual(len(rows), 2 * len(rungs.SOLVERS))
+        self.assertEqual(len(rows), 2 * len(CLIMBERS))
         self.assertEqual(tuple(rows[0]), COLUMNS)
         self.assertEqual({(row["status"], row["physics"], row["first_failing"], row["setup"])
                           for row in rows}, {("ok", "ok", "-", "-")})
@@ -202,8 +203,20 @@ class LadderTest(unittest.TestCase):
         process.send_signal(signal.SIGTERM)
         self.assertEqual(process.wait(timeout=10), 130)
 
+    def test_a_solver_that_says_its_strategy_or_parameters_climbs_too_and_after_those_of_the_list(self):
+        self.ladder("--solver", "relax@sweeps=30,newton:dense,monolithic,exact")
+        self.assertEqual(list(dict.fromkeys(row["solver"] for row in self.rows())),
+                         ["exact", "monolithic", "relax@sweeps=30", "newton:dense"])
+        self.assertEqual({" ".join(call.split()[-6:-2]) for call in self.calls()},
+                         {f"--solver {name} --advance {name}" for name in
+                          ("exact", "monolithic", "relax@sweeps=30", "newton:dense")})
+
+    def test_climbers_of_the_list_have_their_options(self):
+        self.assertEqual(solver_options("pgs_200"), ("--solver", "pgs", "--advance", "pgs", "--sweeps", "200"))
+        self.assertEqual(solver_options("exact"), ("--solver", "exact", "--advance", "exact"))
+
     def test_bad_input_is_one_line_and_leaves_nothing(self):
-        for arguments in (("--rung", "heavy"), ("--solver", "pgs"), ("--steps", "0"), ("--timeout", "nan"),
+        for arguments in (("--rung", "heavy"), ("--solver", "pgs"), ("--solver", "exact,pgs"), ("--steps", "0"), ("--timeout", "nan"),
                           ("--jobs", "x")):
             result = self.ladder(*arguments, code=1)
             self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)

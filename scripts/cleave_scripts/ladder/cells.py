@@ -9,7 +9,8 @@ import subprocess
 import tempfile
 
 from cleave_scripts.ladder import rungs
-from cleave_scripts.ladder.rungs import ENERGY_LIMIT, HEIGHT_LIMIT_M, NAN, OVERSHOOT, PENETRATION_LIMIT_M, SOLVERS
+from cleave_scripts.ladder.climbers import solver_options
+from cleave_scripts.ladder.rungs import ENERGY_LIMIT, HEIGHT_LIMIT_M, NAN, OVERSHOOT, PENETRATION_LIMIT_M
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.manifest import load_manifest
 from cleave_scripts.results.paper import PLAIN
@@ -38,7 +39,7 @@ class Cell:
             text for name, value in self.rung.settings(self.value).items() for text in (f"--{name}", value)
         ]
         return ("run", "--scene", self.rung.scene, *options, "--steps", str(self.steps), "--repeats", "1",
-                "--partitioner", PLAIN[0], "--refiner", PLAIN[1], *SOLVERS[self.solver])
+                "--partitioner", PLAIN[0], "--refiner", PLAIN[1], *solver_options(self.solver))
 
 
 class Interrupted(Exception):

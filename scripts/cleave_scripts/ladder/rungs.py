@@ -230,22 +230,3 @@ OTHERS = (
 )
 
 RUNGS = (*(rung for rung_of_stack in STACKS for rung in both_setups(rung_of_stack)), *OTHERS)
-
-# More rows than by default, for what is refused says nothing about ODE.
-ODE_STEP = ("--solver", "ode-step", "--advance", "ode-step", "--ode-step-max-rows", "1000")
-
-SOLVERS = {
-    "exact": ("--solver", "exact", "--advance", "exact"),
-    "monolithic": ("--solver", "monolithic", "--advance", "monolithic"),
-    **{
-        f"pgs_{sweeps}": ("--solver", "pgs", "--advance", "pgs", "--sweeps", str(sweeps))
-        for sweeps in (20, 200, 2000)
-    },
-    "ode-step": ODE_STEP,
-    "ode-step_pyramid": (*ODE_STEP, "--ode-friction", "pyramid"),
-    **{
-        f"ode-quickstep_{count}": ("--solver", "ode-quickstep", "--advance", "ode-quickstep", "--quickstep-iterations",
-                                   str(count))
-        for count in (20, 200, 2000)
-    },
-}
