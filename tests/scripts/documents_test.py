@@ -14,13 +14,14 @@ USED_BY = {
     "ninja-build": ("CMakePresets.json", "Ninja"),
     "g++": ("CMakeLists.txt", "OpenMP"),
     "pkg-config": ("CMakeLists.txt", "PkgConfig"),
-    "git": ("harness/build_info.cmake", "git"),
+    "git": ("harness/files/build_info.cmake", "git"),
     "libode-dev": ("CMakeLists.txt", "ode"),
     "libeigen3-dev": ("CMakeLists.txt", "Eigen3"),
     "libsuitesparse-dev": ("CMakeLists.txt", "cholmod", "camd", "amd"),
     "libopenblas-dev": ("tests/CMakeLists.txt", "openblas"),
     "libcli11-dev": ("CMakeLists.txt", "CLI11"),
     "libhdf5-dev": ("CMakeLists.txt", "HDF5"),
+    "nlohmann-json3-dev": ("CMakeLists.txt", "nlohmann_json"),
     "libtomlplusplus-dev": ("CMakeLists.txt", "toml++"),
     "libgtest-dev": ("tests/CMakeLists.txt", "GTest"),
     "libbenchmark-dev": ("tests/CMakeLists.txt", "benchmark"),
@@ -38,14 +39,24 @@ def packages():
     return dict(line.split(maxsplit=1) for line in lines if line and not line.startswith("#"))
 
 
+STEP_RECORD = ROOT / "harness" / "experiment" / "step_record.h"
+
+
+def declared_parameters():
+    """Columns of the parameters that partitioners, refiners, solvers and friction models declare."""
+    pattern = re.compile(r'\.name = "([\w-]+)",\s*\.kind = (?:Parameter::)?Kind::(?!path)')
+    sources = [file for room in ("partition", "solver", "harness") for file in (ROOT / room).rglob("*.cpp")]
+    return {name.replace("-", "_") for file in sources for name in pattern.findall(file.read_text())}
+
+
 def step_record_columns():
-    """Columns of steps.csv as harness/step_record.h lists them, with one t_s_* a stage and worker count."""
-    text = (ROOT / "harness" / "step_record.h").read_text()
+    """Columns of steps.csv as step_record.h lists them, with parameters and one t_s_* a stage and worker count."""
+    text = STEP_RECORD.read_text()
     columns = re.findall(r'visit(?:_machine)?\(\s*"(\w+)",', text)
     clock = (ROOT / "solver" / "stage_clock.h").read_text()
     stages = re.findall(r'"(\w+)"', re.search(r"kStageNames = \{(.*?)\}", clock, re.S).group(1))
     workers = re.search(r"kModelWorkers = \{(.*?)\}", clock).group(1).replace(" ", "").split(",")
-    return set(columns) | {f"t_s_{stage}_ms" for stage in stages
+    return set(columns) | declared_parameters() | {f"t_s_{stage}_ms" for stage in stages
                           } | {f"t_s_model_p{count}_ms" for count in workers}
 
 
@@ -105,7 +116,7 @@ class ColumnsTest(unittest.TestCase):
                          sorted(step_record_columns()))
 
     def test_results_readme_names_the_columns_of_the_machine(self):
-        record = (ROOT / "harness" / "step_record.h").read_text()
+        record = STEP_RECORD.read_text()
         marked = set(re.findall(r'visit_machine\(\s*"(\w+)', record))
         text = (ROOT / "results" / "README.md").read_text()
         sentence = re.search(r"are the machine's: (.*?)\.\n", text, re.S).group(1)

@@ -1,4 +1,4 @@
-"""Reads motion.h5, which `cleave run --record-motion` writes; harness/motion_recorder.h says what is in it.
+"""Reads motion.h5, which `cleave run --record-motion` writes; harness/files/motion_file.h says what is in it.
 
 A file that is still being written, or whose run was killed, is read as far as it is complete. Errors are
 ResultError, one line that names the file.
