@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "harness/base/names.h"
+#include "harness/base/numbers.h"
 
 namespace cleave {
 namespace {
@@ -51,6 +52,18 @@ std::vector<std::string> scene_parameters(const Given& stored) {
                               (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
 }
 
+// Whose row carries a content's hash, as file@0123456789abcdef: what a manifest knows is not where it lay.
+void check_can_be_found(const Given& taken) {
+  for (const char* option : {"scene", "partitioner", "refiner", "solver"})
+    for (const std::string& item : split_list(value_of(taken, option))) {
+      const std::size_t at = item.find('@');
+      if (at != std::string::npos && item.find('=', at) == std::string::npos)
+        throw std::invalid_argument("option " + std::string(option) + ": " + item +
+                                    " is known by its content, not by its file; give --" + option +
+                                    " beside --config");
+    }
+}
+
 // A manifest names every option of the table; the command takes those it declares. A flag is given or not.
 bool is_taken(const std::string& name, const std::string& value, bool CommandSet::*command,
               const std::vector<std::string>& own_and_scene) {
@@ -95,6 +108,8 @@ RepeatedOptions repeated_options(const Given& stored, const Given& given, bool C
   RepeatedOptions options{given, {}};
   for (const auto& [name, value] : taken)
     if (options.given.emplace(name, value).second) options.stored.insert(name);
+  for (const auto& [name, value] : given) taken.erase(name);
+  check_can_be_found(taken);
   return options;
 }
 

@@ -23,7 +23,8 @@ struct RepeatedOptions {
 //     --scene of another name   the options of the stored scene
 // Stored defaults that cannot be given beside others (--erp with --stiffness, --advance in --mode separate)
 // are left out, and --out and --force with them. own: options that the command alone declares.
-// Throws std::invalid_argument for a stored option that no command has.
+// Throws std::invalid_argument for a stored option that no command has, and for an algorithm that was read from
+// a file and is known by its content, unless its option is given.
 RepeatedOptions repeated_options(const std::map<std::string, std::string>& stored,
                                  const std::map<std::string, std::string>& given, bool CommandSet::*command,
                                  const std::vector<std::string>& own);
