@@ -192,27 +192,49 @@ TEST_F(Verify, FindsAProblemThatIsNotTheRows) {
   expect_failure(out(), {"problem_hash"});
 }
 
-TEST_F(Verify, FindsChangedCells) {
-  const struct {
-    const char* column;
-    const char* value;
-  } changes[] = {
-      {"problem_hash", "0123456789abcdef"},
-      {"solution_hash", "0123456789abcdef"},
-      {"rows", "12"},
-      {"islands", "19"},
-      {"parts", "1"},
-      {"interface_rows", "7"},
-      {"interface_cover_bodies", "7"},
-      {"part_mass_ratio_max", "2"},
-      {"residual_m_per_s", "1e-10"},
-      {"residual_normal_m_per_s", "nan"},
-      {"interface_unknowns", "0"},  // a schur that works on the whole system has no interface
-  };
-  for (const auto& [column, value] : changes) {
+// All columns that a row is compared in but `status`, which only the file's impulses can contradict.
+const std::vector<std::string> kComparedColumns = {
+    "scene",
+    "seed",
+    "step",
+    "friction",
+    "bodies",
+    "contacts",
+    "rows",
+    "rows_bilateral",
+    "rows_normal",
+    "rows_friction",
+    "islands",
+    "problem_hash",
+    "dt_s",
+    "cfm",
+    "erp",
+    "parts",
+    "max_part_bodies",
+    "cut_pairs",
+    "interface_rows",
+    "interface_bodies",
+    "interface_cover_bodies",
+    "contiguous",
+    "part_mass_ratio_max",
+    "residual_m_per_s",
+    "residual_bilateral_m_per_s",
+    "residual_normal_m_per_s",
+    "residual_friction_m_per_s",
+    "residual_relative",
+    "solution_hash",
+    "interface_unknowns"  // a schur that works on the whole system has no interface
+};
+
+TEST_F(Verify, FindsAChangeOfEveryCellItCompares) {
+  const std::string passed = run_cleave({"verify", out()}).out;
+  EXPECT_NE(passed.find(": " + std::to_string(kComparedColumns.size() + 1) + " columns\n"), std::string::npos)
+      << passed;
+  for (const std::string& column : kComparedColumns) {
     fs::copy(*replayed_ / "out/steps.csv", out() / "steps.csv", fs::copy_options::overwrite_existing);
+    const std::string value = column.starts_with("residual") ? "1e-10" : "77";
     change_cell(column, value);
-    expect_failure(out(), {std::string(column) + " = " + value});
+    expect_failure(out(), {column + " = " + value});
   }
 }
 
@@ -220,6 +242,78 @@ TEST_F(Verify, FindsAnOkAboveTheLimit) {
   change_cell("residual_m_per_s", "1e-6");
   fs::remove(file());  // by the table alone
   expect_failure(out(), {"says ok with a residual of 1e-6 m/s"});
+}
+
+// The table of harness/README.md says what each check catches. Each row of it is broken here, and it has as
+// many rows as the program has checks.
+struct Breakage {
+  std::string check;    // first cell of the row
+  std::string failure;  // in the line that fails
+  std::function<void(ProblemFile&)> change;
+};
+
+const std::vector<Breakage> kBreakages = {
+    {"friction model", "friction_model bax; --friction: 'bax' is unknown",
+     [](ProblemFile& f) { f.friction_model = "bax"; }},
+    {"label of a solution", "solution/mindp+kl+schur: label",
+     [](ProblemFile& f) { f.solutions["mindp+kl+schur"] = f.solutions.at(kLabel); }},
+    {"residual", "m/s, stored", [](ProblemFile& f) { f.solutions.at(kLabel).residual_m_per_s = 1e-4; }},
+    {"velocity", "velocity is v0", [](ProblemFile& f) { f.solutions.at(kLabel).velocity[7] += 1e-6; }},
+    {"label of a partition", "partition/mindp+kl+schur: label",
+     [](ProblemFile& f) { f.partitions["mindp+kl+schur"] = f.partitions.at(kLabel); }},
+    {"part ids", "part_of_body[3] = 20",
+     [](ProblemFile& f) { f.partitions.at(kLabel).part_of_body[3] = 20; }},
+    {"can be split again", "cannot be split again: --partitioner: 'mindq'",
+     [](ProblemFile& f) { f.partitions.at(kLabel).partitioner = "mindq"; }},
+    {"split again", "split again, 1 bodies differ",
+     [](ProblemFile& f) {
+       int& part = f.partitions.at(kLabel).part_of_body[3];
+       part = part == 0 ? 1 : 0;
+     }},
+    {"limit", "says ok with a residual of 1e-6 m/s", nullptr},  // of the table, see below
+    {"row", "status = ok, computed anew: a residual above the limit",
+     [](ProblemFile& f) { f.solutions.at(kLabel).impulse[4] += 1; }},
+};
+
+std::vector<std::string> checks_of_readme() {
+  std::istringstream readme(read_text(fs::path(CLEAVE_SOURCE_DIR) / "harness/README.md"));
+  std::vector<std::string> names;
+  bool inside = false;
+  for (std::string line; std::getline(readme, line);) {
+    if (line.starts_with("| check |")) {
+      inside = true;
+    } else if (!line.starts_with("|")) {
+      inside = false;
+    } else if (inside && !line.starts_with("|---")) {
+      names.push_back(line.substr(2, line.find(" |", 2) - 2));
+    }
+  }
+  return names;
+}
+
+TEST_F(Verify, EveryCheckOfTheTableCanFail) {
+  std::vector<std::string> broken;
+  for (const Breakage& breakage : kBreakages) {
+    SCOPED_TRACE(breakage.check);
+    broken.push_back(breakage.check);
+    fs::copy(*replayed_ / "out", out(), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
+    if (breakage.change) {
+      change_file(breakage.change);
+    } else {
+      change_cell("residual_m_per_s", "1e-6");
+    }
+    expect_failure(out(), {breakage.failure});
+  }
+  EXPECT_EQ(broken, checks_of_readme());
+
+  int calls = 0;
+  for (const char* file : {"verify_checks.cpp", "verify_rows.cpp"}) {
+    const std::string text = read_text(fs::path(CLEAVE_SOURCE_DIR) / "harness/commands" / file);
+    for (std::size_t at = text.find("list.add("); at != std::string::npos;
+         at = text.find("list.add(", at + 1))
+      ++calls;
+  }
+  EXPECT_EQ(calls, static_cast<int>(kBreakages.size()));
 }
 
 TEST_F(Verify, DamagedInputIsNotAFailedCheck) {
