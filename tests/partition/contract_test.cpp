@@ -98,6 +98,19 @@ TEST_P(PartitionerContract, accepts_the_smallest_graphs_and_the_largest_parts) {
   EXPECT_EQ(run(GetParam(), triangle.graph(), options).part_count, 3);
 }
 
+// What a row does not promise is not checked of it; each promise is made by somebody.
+TEST(PartitionerPromises, each_is_checked_of_several) {
+  int contiguous = 0, at_most_max_bodies = 0, in_order = 0;
+  for (const PartitionerEntry& entry : partitioners()) {
+    contiguous += entry.promise.contiguous;
+    at_most_max_bodies += entry.promise.at_most_max_bodies;
+    in_order += entry.promise.grown_in_order;
+  }
+  EXPECT_GE(contiguous, 5);
+  EXPECT_GE(at_most_max_bodies, 5);
+  EXPECT_GE(in_order, 4);
+}
+
 // The message is one line that names the parameter and its value.
 template <typename Run>
 void expect_rejected(Run run, const std::string& parameter, const std::string& value) {

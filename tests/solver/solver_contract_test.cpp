@@ -48,6 +48,9 @@ class SolverContractTest : public testing::TestWithParam<std::string> {
     return summary.status == SolveStatus::ok;
   }
 
+  // How many of the cases must have had a solution to compare: all, and some of a solver that may miss.
+  static int least_compared(int cases) { return may_miss(GetParam()) ? (cases + 4) / 5 : cases; }
+
   static void expect_oracle(const SmallProblemOptions& options, std::uint64_t first_seed, int seeds,
                             double tolerance) {
     const auto solver = make();
@@ -93,17 +96,21 @@ TEST_P(SolverContractTest, WithoutComplianceOkStillMeansExact) {
 
 TEST_P(SolverContractTest, ExactStepsGainNoEnergy) {
   const auto solver = make();
+  int compared = 0;
   for (int seed = 4000; seed < 4200; ++seed) {
     const StepProblem problem = make_small_problem(seed, {.zero_inside_bounds = true});
     Solution solution = cold_start(problem);
     if (solver->solve(problem, own_parts(problem.body_count()), solution).status != SolveStatus::ok) continue;
+    ++compared;
     const ResidualReport report = judge(problem, solution.impulse);
     EXPECT_LE(report.energy_excess_j, 1e-9 * std::max(1.0, report.kinetic_energy_j)) << "seed " << seed;
   }
+  EXPECT_GE(compared, least_compared(200));
 }
 
 TEST_P(SolverContractTest, AnyWarmStartGivesTheSameSolution) {
   const auto solver = make();
+  int compared = 0;
   for (int seed = 5000; seed < 5100; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const StepProblem problem = make_small_problem(seed, {.least_cfm = 1e-5});
@@ -120,11 +127,14 @@ TEST_P(SolverContractTest, AnyWarmStartGivesTheSameSolution) {
     for (double& impulse : wild.impulse) impulse = random.uniform(-1e4, 1e4);  // mostly outside the bounds
     if (expect_solved(problem, solver->solve(problem, parts, wild), wild)) {
       EXPECT_TRUE(velocities_agree(problem, wild.velocity, cold.velocity, 1e-9));
+      ++compared;
     }
   }
+  EXPECT_GE(compared, least_compared(100));
 }
 
 TEST_P(SolverContractTest, ThePartitionDoesNotChangeTheSolution) {
+  int compared = 0;
   for (int seed = 0; seed < 2; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const StepProblem problem = make_pile(seed, {.columns = 2, .rows = 2, .layers = 2, .mass_ratio = 10});
@@ -137,7 +147,12 @@ TEST_P(SolverContractTest, ThePartitionDoesNotChangeTheSolution) {
       Solution split = cold_start(problem);
       if (!expect_solved(problem, solve(problem, parts, split), split)) continue;
       EXPECT_TRUE(velocities_agree(problem, split.velocity, whole.velocity, 1e-9));
+      ++compared;
     }
+  }
+  // Those that may miss end without a solution on every one of these piles, and say so.
+  if (!may_miss(GetParam())) {
+    EXPECT_EQ(compared, 2 * 4);
   }
 }
 
@@ -279,9 +294,11 @@ TEST_P(SolverContractTest, StageTimesAddUp) {
   }
 }
 
-// Of every strategy that runs.
+// Of every strategy that runs; a solver that leaves the test here takes no iterations of a strategy.
 TEST_P(SolverContractTest, MaxIterationsIsAnEnd) {
-  if (!has("max-iterations")) return;
+  const bool of_strategies = GetParam() != "pgs";
+  EXPECT_EQ(has("max-iterations"), of_strategies);
+  if (!of_strategies) return;
   const StepProblem problem = make_pile(13, {.columns = 3, .rows = 2, .layers = 3, .cfm = 1e-8});
   const std::vector<int> parts = sliced_parts(problem.body_count(), 4);
   Solution solution = cold_start(problem);
