@@ -111,6 +111,7 @@ TEST(SceneContract, TheSeedAndNothingElseDecides) {
 }
 
 TEST(SceneContract, NothingFallsThroughTheStaticPlanes) {
+  int scenes_seen = 0, bodies_above = 0;
   for (const ShippedScene& scene : shipped_scenes()) {
     if (of_ladder(scene)) continue;
     Given small = scene.given;
@@ -125,8 +126,12 @@ TEST(SceneContract, NothingFallsThroughTheStaticPlanes) {
       dGeomPlaneGetParams(geom, plane);
       for (const dBodyID body : world.content().bodies)
         EXPECT_GT(dCalcVectorDot3(plane, dBodyGetPosition(body)), plane[3]) << scene.name;
+      bodies_above += static_cast<int>(world.content().bodies.size());
     }
+    ++scenes_seen;
   }
+  EXPECT_GE(scenes_seen, 3);
+  EXPECT_GE(bodies_above, 50);
 }
 
 }  // namespace
