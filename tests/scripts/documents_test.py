@@ -39,24 +39,18 @@ def packages():
     return dict(line.split(maxsplit=1) for line in lines if line and not line.startswith("#"))
 
 
-STEP_RECORD = ROOT / "harness" / "experiment" / "step_record.h"
-
-
-def declared_parameters():
-    """Columns of the parameters that partitioners, refiners, solvers and friction models declare."""
-    pattern = re.compile(r'\.name = "([\w-]+)",\s*\.kind = (?:Parameter::)?Kind::(?!path)')
-    sources = [file for room in ("partition", "solver", "harness") for file in (ROOT / room).rglob("*.cpp")]
-    return {name.replace("-", "_") for file in sources for name in pattern.findall(file.read_text())}
-
-
 def step_record_columns():
-    """Columns of steps.csv as step_record.h lists them, with parameters and one t_s_* a stage and worker count."""
-    text = STEP_RECORD.read_text()
+    """Columns of steps.csv as harness/experiment/step_record.h lists them and algorithms declare them, with one t_s_* a stage and worker count."""
+    text = (ROOT / "harness" / "experiment" / "step_record.h").read_text()
     columns = re.findall(r'visit(?:_machine)?\(\s*"(\w+)",', text)
+    declared = "".join(file.read_text() for room in ("partition", "solver", "harness") for file in (ROOT / room).rglob("*.cpp"))
+    parameters = [name.replace("-", "_") for name in re.findall(r'\.name = "([\w-]+)"', declared)]
+    table = (ROOT / "harness" / "experiment" / "cell_measures.cpp").read_text()
+    parameters += re.findall(r'\{"(\w+)",', table)
     clock = (ROOT / "solver" / "stage_clock.h").read_text()
     stages = re.findall(r'"(\w+)"', re.search(r"kStageNames = \{(.*?)\}", clock, re.S).group(1))
     workers = re.search(r"kModelWorkers = \{(.*?)\}", clock).group(1).replace(" ", "").split(",")
-    return set(columns) | declared_parameters() | {f"t_s_{stage}_ms" for stage in stages
+    return set(columns) | set(parameters) | {f"t_s_{stage}_ms" for stage in stages
                           } | {f"t_s_model_p{count}_ms" for count in workers}
 
 
@@ -116,7 +110,7 @@ class ColumnsTest(unittest.TestCase):
                          sorted(step_record_columns()))
 
     def test_results_readme_names_the_columns_of_the_machine(self):
-        record = STEP_RECORD.read_text()
+        record = (ROOT / "harness" / "experiment" / "step_record.h").read_text()
         marked = set(re.findall(r'visit_machine\(\s*"(\w+)', record))
         text = (ROOT / "results" / "README.md").read_text()
         sentence = re.search(r"are the machine's: (.*?)\.\n", text, re.S).group(1)
