@@ -165,13 +165,25 @@ std::vector<Parameter> parameters_of(const std::string& option, const std::strin
   throw std::logic_error("--" + option + " has no " + name);
 }
 
+ContentReader content_of(const std::string& option, const std::string& name) {
+  for (const AlgorithmKind& kind : algorithm_kinds())
+    if (kind.option == option)
+      for (const AlgorithmEntry& entry : kind.entries)
+        if (entry.name == name) return entry.content;
+  return nullptr;
+}
+
 void check_algorithm(const std::string& option, const std::string& text) {
   check_name("--" + option, algorithm_name(text), names_for(option));
 }
 
 Algorithm read_named(const std::string& option, const std::string& text, const CommonValues& common) {
   check_algorithm(option, text);
-  return read_algorithm("--" + option, text, parameters_of(option, algorithm_name(text)), common, owners_of);
+  const std::vector<Parameter> parameters = parameters_of(option, algorithm_name(text));
+  Algorithm algorithm = read_algorithm("--" + option, text, parameters, common, owners_of);
+  if (const ContentReader content = content_of(option, algorithm.name))
+    algorithm.text = text_with_content(text, parameters, content(algorithm.settings));
+  return algorithm;
 }
 
 std::vector<Algorithm> read_list(const std::string& option, const std::string& text,
