@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <functional>
 #include <limits>
 
@@ -105,8 +107,8 @@ const Damage kDamages[] = {
      "friction_row[1] = 0, allowed: a normal row between the same bodies"},
     {"MuOfNormal", [](StepProblem& p) { p.friction_coefficient[3] = 0.5; },
      "friction_coefficient[3] = 0.5, allowed: 0 for a row that is not friction"},
-    {"ConstraintOfOtherBodies", [](StepProblem& p) { p.row_constraint[3] = p.row_constraint[2]; },
-     "row_constraint[3] = 0, allowed: another id than that of the row before"},
+    {"ConstraintOfOtherBodies", [](StepProblem& p) { std::ranges::fill(p.row_constraint, 0); },
+     "row_constraint[12] = 0, allowed: another id than that of the row before"},
     {"MassAsymmetric", [](StepProblem& p) { p.mass[36 + 6] = 1e-6; }, "mass[42] = 1e-06, allowed: symmetric"},
     {"MassZero", [](StepProblem& p) { p.mass[36 + 7] = 0; },
      "mass[43] = 0, allowed: symmetric positive definite"},
