@@ -38,10 +38,11 @@ struct Best {
 
 // Where the limit cannot be met by any impulses in double precision, a text that says so: their last digit is
 // a velocity above it. Bodies wedged between others that cannot give way need such impulses.
-std::string rounding_note(const PreparedStep& step, const Solution& solution) {
+// impulse: along the axes of the set.
+std::string rounding_note(const PreparedStep& step, std::span<const double> impulse) {
   double largest = 0;
   for (int r = 0; r < step.row_count(); ++r) {
-    largest = std::max(largest, step.diagonal()[r] * std::abs(solution.impulse[r]));
+    largest = std::max(largest, step.diagonal()[r] * std::abs(impulse[r]));
   }
   const double rounding = std::numeric_limits<double>::epsilon() * largest;
   if (!(rounding > step.exact_limit_m_per_s())) return "";
@@ -58,18 +59,21 @@ struct Link {
 class DirectSolver : public StepSolver {
  public:
   DirectSolver(std::string_view strategy, const KernelRow& kernel, const SolveOptions& options,
-               const Settings& settings)
+               const Settings& settings, std::unique_ptr<Strategy> own)
       : strategy_(strategy),
         kernel_name_(kernel.resolved),
         splits_(kernel.splits),
         settings_(settings),
         clock_(options.threads),
         kernel_(kernel.make(settings)),
-        state_(read_direct_options(options, settings), clock_) {}
+        state_(read_direct_options(options, settings), clock_) {
+    if (own != nullptr) links_.push_back({strategy, std::move(own)});
+  }
 
   bool uses_partition() const override { return splits_; }
 
  private:
+  std::string refuse_set(const StepProblem& problem) override;
   SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
                         Solution& solution) override;
   void analyze(const StepProblem& problem, std::span<const int> part_of_body);
@@ -105,6 +109,12 @@ Strategy& DirectSolver::strategy(std::string_view name) {
     }
   }
   throw std::logic_error("no strategy of this name: " + std::string(name));
+}
+
+// What auto picks takes every set; a named strategy must take it from its first link on.
+std::string DirectSolver::refuse_set(const StepProblem& problem) {
+  if (strategy_ == "auto" || strategy(strategy_).takes_turned_boxes()) return {};
+  return find_set_refusal("strategy", strategy_, problem);
 }
 
 // Rows between the same bodies, or at least between pairs that the analysed pattern has a place for.
@@ -213,15 +223,16 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const 
   }
   analyze(problem, part_of_body);
   state_.part_of_body = part_of_body;
+  step_.set().to_axes(solution.impulse);
   const bool solved = run_attempts(summary, problem, solution.impulse);
-  for (std::size_t r = 0; r < state_.impulse.size(); ++r) {
-    solution.impulse[r] = std::clamp(state_.impulse[r], problem.lower[r], problem.upper[r]);
-  }
+  step_.set().project(state_.impulse);
+  solution.impulse = state_.impulse;
+  step_.set().to_rows(solution.impulse);
   step_.velocity(solution.impulse, solution.velocity);
   if (!solved) {
     summary.status = SolveStatus::not_converged;
     summary.message =
-        "strategy " + summary.strategy + " stopped above the limit" + rounding_note(step_, solution);
+        "strategy " + summary.strategy + " stopped above the limit" + rounding_note(step_, state_.impulse);
     for (double v : solution.velocity) {
       if (!std::isfinite(v)) summary.status = SolveStatus::diverged;
     }
@@ -236,13 +247,14 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const 
 }  // namespace
 
 std::unique_ptr<StepSolver> make_direct_solver(std::string_view strategy, std::string_view kernel,
-                                               const SolveOptions& options, const Settings& settings) {
+                                               const SolveOptions& options, const Settings& settings,
+                                               std::unique_ptr<Strategy> own) {
   const auto name_of = [](const AlgorithmEntry& row) { return std::string_view(row.name); };
   const auto strategy_row = std::ranges::find(strategy_table(), strategy, name_of);
   const auto kernel_row = std::ranges::find(kernel_table(), kernel, name_of);
   if (strategy_row == strategy_table().end() || kernel_row == kernel_table().end()) return nullptr;
   if (!runs_on(*strategy_row, *kernel_row)) return nullptr;
-  return std::make_unique<DirectSolver>(strategy, *kernel_row, options, settings);
+  return std::make_unique<DirectSolver>(strategy_row->name, *kernel_row, options, settings, std::move(own));
 }
 
 }  // namespace cleave

@@ -5,13 +5,6 @@
 #include <limits>
 
 namespace cleave {
-namespace {
-
-// Settling is given up above so many violations and this share of the rows: more never came right.
-constexpr int kMostViolations = 3;
-constexpr double kViolatedShare = 0.005;
-
-}  // namespace
 
 void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,
                        std::span<const double> warm_impulse) {
@@ -20,9 +13,8 @@ void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, Solve
   summary = &solve_summary;
   const StepProblem& problem = prepared.problem();
   const std::size_t m = problem.row_count(), n6 = 6 * static_cast<std::size_t>(problem.body_count());
-  impulse.resize(m);
-  for (std::size_t r = 0; r < m; ++r)
-    impulse[r] = std::clamp(warm_impulse[r], problem.lower[r], problem.upper[r]);
+  impulse.assign(warm_impulse.begin(), warm_impulse.end());
+  prepared.set().project(impulse);
   velocity.resize(n6);
   slack.resize(m);
   state.assign(m, RowState::free);
@@ -36,8 +28,19 @@ void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, Solve
 }
 
 void SolveState::update_velocity() {
-  step->velocity(impulse, velocity);
-  step->slack(velocity, impulse, slack);
+  const std::span<const double> in_rows = step->set().in_rows(impulse, row_impulse);
+  step->velocity(in_rows, velocity);
+  step->slack(velocity, in_rows, slack);
+  step->set().to_axes(slack);
+}
+
+bool SolveState::factor() {
+  ++summary->factorizations;
+  return kernel->factor({weight, step->set().axes()}, tasks);
+}
+
+void SolveState::solve() {
+  kernel->solve(f_v, f_r, dv, dlambda, tasks);
 }
 
 void SolveState::states_from_impulses() {
@@ -58,14 +61,13 @@ bool SolveState::factor_free() {
     if (state[r] == RowState::upper) impulse[r] = problem.upper[r];
   }
   update_velocity();
-  ++summary->factorizations;
-  return kernel->factor(weight, tasks);
+  return factor();
 }
 
 void SolveState::correct_free() {
   std::fill(f_v.begin(), f_v.end(), 0.0);
   for (std::size_t r = 0; r < impulse.size(); ++r) f_r[r] = -slack[r];
-  kernel->solve(f_v, f_r, dv, dlambda, tasks);
+  solve();
   for (std::size_t r = 0; r < impulse.size(); ++r) {
     if (state[r] == RowState::free) impulse[r] += dlambda[r];
   }
@@ -107,17 +109,16 @@ int SolveState::find_violations(double tolerance) {
   return static_cast<int>(violated.size());
 }
 
-bool SolveState::settle(double tolerance) {
-  constexpr int kRounds = 4;
+bool SolveState::settle(double tolerance, const Settling& settling) {
+  const double most =
+      settling.most_violations + settling.violated_share * static_cast<double>(impulse.size());
   int least = std::numeric_limits<int>::max();
-  for (int round = 0; round < kRounds && factor_free(); ++round) {
-    refine_free(0.1 * tolerance, 8, true);
+  for (int round = 0; round < settling.rounds && factor_free(); ++round) {
+    refine_free(0.1 * tolerance, settling.refinements, true);
     const int count = find_violations(tolerance);
     // A narrow row may stand at the wrong one of its bounds and yet be right to within the tolerance.
     if (count == 0 || residual() <= tolerance) return true;
-    if (count >= least || count > kMostViolations + kViolatedShare * static_cast<double>(impulse.size())) {
-      return false;
-    }
+    if (count >= least || count > most) return false;
     least = count;
     for (int row : violated) flip(row);
   }

@@ -74,12 +74,13 @@ std::span<const Keywords> keywords() {
   return table;
 }
 
-// Parameters without a default that nobody gave.
+// Parameters without a default that nobody gave. A file is that of one algorithm and given for no other.
 std::vector<std::string> missing_parameters(const std::string& option, const std::string& name,
                                             const CommonValues& common) {
   std::vector<std::string> missing;
   for (const Parameter& parameter : parameters_of(option, name))
-    if (parameter.default_value.empty() && !common.contains(parameter.name))
+    if (parameter.default_value.empty() &&
+        (parameter.kind == Parameter::Kind::path || !common.contains(parameter.name)))
       missing.push_back(parameter.name);
   return missing;
 }

@@ -11,33 +11,18 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/strategies/interior_constants.h"
 #include "solver/strategies/interior_iterate.h"
 #include "solver/strategies/strategy.h"
 
 namespace cleave {
 namespace {
 
-constexpr double kStepFraction = 0.995;  // of the way to the nearest bound
-constexpr double kShortStep = 0.1;
-// First attempt at the active set, as an error in units of the velocity scale, by least C_r / d_r: stiffer
-// rows leave it undecided for longer. A failed attempt is repeated at a hundredth of the error.
-struct FirstPolish {
-  double compliance, error;
-};
-constexpr FirstPolish kFirstPolish[] = {{1e-4, 1e-5}, {1e-9, 1e-6}, {1e-11, 1e-8}, {0, 1e-10}};
-constexpr double kNextPolish = 1e-2;
-// The compliance delta that is factored follows the rounding of the directions, in units of the error they
-// are to remove: from kFactoredCompliance tenfold up or down, within these limits.
-constexpr double kLeastDelta = 1e-14, kMostDelta = 1e-9;
-constexpr double kMuchRounding = 0.1, kLittleRounding = 1e-3;
-constexpr int kRaises = 3;         // of the least delta, when full steps make the error grow all the same
-constexpr double kSettled = 1e-3;  // errors above this, of the velocity scale, may grow
-constexpr double kFullStep = 0.9, kGrowth = 2;
-constexpr int kPatience = 2;  // iterations without progress
-
 class InteriorPoint : public Strategy {
  public:
+  explicit InteriorPoint(const InteriorConstants& constants) : constants_(constants), iterate_(constants) {}
   bool run(SolveState& state) override;
+  bool takes_turned_boxes() const override { return true; }
 
  private:
   enum class Progress { good, finished, rounding };
@@ -48,7 +33,9 @@ class InteriorPoint : public Strategy {
   void adapt_delta(double rounding);
   bool raise_delta();
   bool is_poor() const;
+  double first_polish(double least_compliance) const;
 
+  InteriorConstants constants_;
   InteriorIterate iterate_;
   std::vector<double> kept_impulse_;
   double best_error_ = 0, last_step_ = 1, polish_below_ = 0;
@@ -62,19 +49,23 @@ class InteriorPoint : public Strategy {
 // primal-dual corrector interior point algorithm for linear programming", Appl. Numer. Math. 59, 2009).
 bool InteriorPoint::is_poor() const {
   const double step = iterate_.largest_step();
-  return step < kShortStep || iterate_.mean_product(kStepFraction * step) > iterate_.mean_product(0);
+  return step < constants_.short_step ||
+         iterate_.mean_product(constants_.step_fraction * step) > iterate_.mean_product(0);
 }
 
+// The compliance delta that is factored follows the rounding of the directions, in units of the error they
+// are to remove.
 void InteriorPoint::adapt_delta(double rounding) {
-  if (rounding > kMuchRounding) delta_ = std::min(10 * delta_, kMostDelta);
-  if (rounding < kLittleRounding) delta_ = std::max(0.1 * delta_, least_delta_);
+  if (rounding > constants_.much_rounding)
+    delta_ = std::min(constants_.delta_rise * delta_, constants_.most_delta);
+  if (rounding < constants_.little_rounding) delta_ = std::max(constants_.delta_fall * delta_, least_delta_);
 }
 
 // False when it was raised often enough.
 bool InteriorPoint::raise_delta() {
-  if (raises_++ == kRaises) return false;
-  least_delta_ *= 10;
-  delta_ = std::max(10 * best_delta_, least_delta_);
+  if (raises_++ == constants_.raises) return false;
+  least_delta_ *= constants_.raise_factor;
+  delta_ = std::max(constants_.raise_factor * best_delta_, least_delta_);
   return true;
 }
 
@@ -85,17 +76,20 @@ void InteriorPoint::step(SolveState& state, double error) {
   if (is_poor()) iterate_.find_direction(state, Aim::centre);
   iterate_.correct_centrality(state);
   if (rounds_) adapt_delta(iterate_.rounding(state) / error);
-  last_step_ = std::min(1.0, kStepFraction * iterate_.largest_step());
+  last_step_ = std::min(1.0, constants_.step_fraction * iterate_.largest_step());
   iterate_.advance(state, last_step_);
 }
 
 // Reads the active set off the slacks and multipliers and solves on it exactly, flipping what is still wrong
 // a few times. On failure the interior iterate is restored.
 bool InteriorPoint::polish(SolveState& state) {
-  const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
+  const double tolerance =
+      constants_.polish_accuracy * state.options.target_m_per_s * state.step->velocity_scale();
+  const Settling settling{constants_.polish_rounds, constants_.polish_refinements,
+                          constants_.polish_violations, constants_.polish_violated_share};
   kept_impulse_ = state.impulse;
   iterate_.read_active_set(state);
-  if (state.settle(tolerance) && state.residual() <= state.step->exact_limit_m_per_s()) return true;
+  if (state.settle(tolerance, settling) && state.residual() <= state.step->exact_limit_m_per_s()) return true;
   state.impulse = kept_impulse_;
   state.update_velocity();
   return false;
@@ -112,24 +106,28 @@ InteriorPoint::Progress InteriorPoint::watch(const SolveState& state, double err
     return Progress::good;
   }
   ++since_best_;
-  const bool settled = best_error_ < kSettled * state.step->velocity_scale();
-  if (settled && last_step_ >= kFullStep && error > kGrowth * best_error_) ++grown_;
-  if (best_error_ <= state.step->exact_limit_m_per_s() && since_best_ >= kPatience) return Progress::finished;
-  return grown_ >= kPatience ? Progress::rounding : Progress::good;
+  const bool settled = best_error_ < constants_.settled * state.step->velocity_scale();
+  if (settled && last_step_ >= constants_.full_step && error > constants_.growth * best_error_) ++grown_;
+  if (best_error_ <= state.step->exact_limit_m_per_s() && since_best_ >= constants_.patience) {
+    return Progress::finished;
+  }
+  return grown_ >= constants_.patience ? Progress::rounding : Progress::good;
+}
+
+double InteriorPoint::first_polish(double least_compliance) const {
+  return least_compliance >= constants_.soft_compliance    ? constants_.soft_polish
+         : least_compliance >= constants_.firm_compliance  ? constants_.firm_polish
+         : least_compliance >= constants_.stiff_compliance ? constants_.stiff_polish
+                                                           : constants_.rigid_polish;
 }
 
 void InteriorPoint::begin(SolveState& state) {
   const double least = state.step->least_relative_compliance();
-  polish_below_ = 0;
-  for (const FirstPolish& first : kFirstPolish) {
-    if (polish_below_ == 0 && least >= first.compliance) {
-      polish_below_ = first.error * state.step->velocity_scale();
-    }
-  }
-  delta_ = kFactoredCompliance;
+  polish_below_ = first_polish(least) * state.step->velocity_scale();
+  delta_ = constants_.first_delta;
   best_delta_ = delta_;
-  least_delta_ = kLeastDelta;
-  rounds_ = least < kMostDelta;
+  least_delta_ = constants_.least_delta;
+  rounds_ = least < constants_.most_delta;
   best_error_ = std::numeric_limits<double>::infinity();
   since_best_ = grown_ = raises_ = 0;
   iterate_.start(state);
@@ -151,7 +149,7 @@ bool InteriorPoint::run(SolveState& state) {
     if (error <= polish_below_) {
       if (polish(state)) return true;
       if (error <= target) break;
-      polish_below_ = std::max(kNextPolish * error, target);
+      polish_below_ = std::max(constants_.next_polish * error, target);
     }
     ++state.summary->iterations;
     if (iterate_.factor(state, delta_)) {
@@ -166,6 +164,12 @@ bool InteriorPoint::run(SolveState& state) {
 
 }  // namespace
 
-std::unique_ptr<Strategy> make_interior_point(const Settings&) { return std::make_unique<InteriorPoint>(); }
+std::unique_ptr<Strategy> make_interior_point(const Settings&) {
+  return make_interior_point(InteriorConstants{});
+}
+
+std::unique_ptr<Strategy> make_interior_point(const InteriorConstants& constants) {
+  return std::make_unique<InteriorPoint>(constants);
+}
 
 }  // namespace cleave
