@@ -56,8 +56,9 @@ std::vector<int> row_starts(int bodies, std::span<const ConstraintLink> links) {
 
 }  // namespace
 
-BodyGraph::BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links)
-    : mass_kg_(mass_kg.begin(), mass_kg.end()) {
+BodyGraph::BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links,
+                     std::optional<int> step)
+    : mass_kg_(mass_kg.begin(), mass_kg.end()), step_(step) {
   check_masses(mass_kg);
   const int n = body_count();
   check_links(n, links);

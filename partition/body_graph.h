@@ -8,6 +8,7 @@
 // Static geometry is no node; constraints with it add to no degree, edge or gain.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,8 +31,12 @@ class BodyGraph {
   // Merges links of the same pair into one edge; links with static geometry or of a body with itself are no
   // edge. mass_kg: (n). Throws std::invalid_argument naming the link when a body index is outside [-1, n) or
   // rows < 1, naming the body when a mass is not finite and positive, and when all rows together exceed the
-  // range of int (so that no weight, degree, cut or gain can overflow).
-  BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links);
+  // range of int (so that no weight, degree, cut or gain can overflow). step: of the run that the graph was
+  // taken from, where there is one.
+  BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links,
+            std::optional<int> step = std::nullopt);
+
+  std::optional<int> step() const { return step_; }
 
   int body_count() const { return static_cast<int>(mass_kg_.size()); }
   int edge_count() const { return static_cast<int>(neighbour_.size()) / 2; }
@@ -59,6 +64,7 @@ class BodyGraph {
   std::vector<int> neighbour_;    // (2 edges)
   std::vector<int> constraints_;  // (2 edges)
   std::vector<int> rows_;         // (2 edges)
+  std::optional<int> step_;
 };
 
 // Connected components: the islands of the step. Returns their number and, if asked, one island id per body,

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "partition/body_graph.h"
@@ -22,11 +23,17 @@ struct PartsPromise {
                                     // max-bodies bodies touches no later one
 };
 
+// This graph cannot be split by this partitioner, though others can: one line that says why.
+struct CannotSplit : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 class Partitioner {
  public:
   virtual ~Partitioner() = default;
 
   // Runs, and asserts that every body is in exactly one part, that none is empty, and what was promised.
+  // Throws CannotSplit.
   Partition run(const BodyGraph& graph) const;
 
   // From its row, by make_partitioner (registry.h). max_bodies: its parameter of this name, if it has one.

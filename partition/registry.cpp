@@ -13,6 +13,8 @@ std::unique_ptr<Partitioner> make_maxdp(const Settings& settings);
 std::unique_ptr<Partitioner> make_bfs(const Settings& settings);
 std::unique_ptr<Partitioner> make_mass_ratio(const Settings& settings);
 std::unique_ptr<Partitioner> make_mix(const Settings& settings);
+std::unique_ptr<Partitioner> make_file(const Settings& settings);
+std::string file_content(const Settings& settings);
 
 std::unique_ptr<Refiner> make_none(const Settings& settings);
 std::unique_ptr<Refiner> make_kernighan_lin(const Settings& settings);
@@ -79,6 +81,16 @@ std::span<const PartitionerEntry> partitioners() {
        kGrown,
        true,
        make_mix},
+      {{"file",
+        "parts that another program made",
+        "METIS 5.1 manual, partition file",
+        {{.name = "path",
+          .kind = Parameter::Kind::path,
+          .help = "text, a part id a line; with {step} or {step:06} in its name one file a step"}},
+        file_content},
+       {},
+       false,
+       make_file},
   };
   return table;
 }

@@ -45,9 +45,8 @@ std::span<const SceneEntry> scenes() {
       {{"ladder_free", "falling boxes that touch nothing", "scenarios/README.md", ladder_free_parameters()},
        make_ladder_free},
       {{"file", "bodies, joints and events that a file describes", "scenarios/FILE_SCENES.md",
-        file_scene_parameters()},
-       make_file_scene,
-       file_scene_content_id},
+        file_scene_parameters(), file_scene_content_id},
+       make_file_scene},
   };
   return table;
 }

@@ -33,7 +33,7 @@ Settings make_scene_settings(const SceneEntry& scene, const std::map<std::string
 }
 
 std::string scene_content_id(const SceneEntry& scene, const Settings& settings) {
-  return scene.content_id == nullptr ? "" : scene.content_id(settings);
+  return scene.content == nullptr ? "" : scene.content(settings);
 }
 
 }  // namespace cleave

@@ -43,8 +43,6 @@ class Scene {
 
 struct SceneEntry : AlgorithmEntry {
   std::unique_ptr<Scene> (*make)();
-  // Of a scene whose content lies outside the program, null for all others: see scene_content_id().
-  std::string (*content_id)(const Settings&) = nullptr;
 };
 
 std::span<const SceneEntry> scenes();

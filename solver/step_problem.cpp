@@ -128,13 +128,28 @@ std::string find_kind_error(const StepProblem& p, std::size_t r) {
   return {};
 }
 
+bool same_bodies(const StepProblem& p, std::size_t r, std::size_t other) {
+  return p.row_body[2 * r] == p.row_body[2 * other] && p.row_body[2 * r + 1] == p.row_body[2 * other + 1];
+}
+
+// Arrays that speak of one row must agree, and so must the rows of one contact and of one constraint.
+std::string find_pair_error(const StepProblem& p, std::size_t r) {
+  if (p.row_kind[r] != RowKind::friction && p.friction_coefficient[r] != 0)
+    return error_at("friction_coefficient", r, p.friction_coefficient[r], "0 for a row that is not friction");
+  if (p.row_kind[r] == RowKind::friction && !same_bodies(p, r, p.friction_row[r]))
+    return error_at("friction_row", r, p.friction_row[r], "a normal row between the same bodies");
+  if (r > 0 && p.row_constraint[r] == p.row_constraint[r - 1] && !same_bodies(p, r, r - 1))
+    return error_at("row_constraint", r, p.row_constraint[r],
+                    "another id than that of the row before, which joins other bodies");
+  return {};
+}
+
 // Whether rows r + 1 and r + 2 are the friction rows of normal row r, between the same bodies.
 bool has_tangent_pair(const StepProblem& p, std::size_t r) {
   if (r + 2 >= p.rhs.size()) return false;
   for (std::size_t k = r + 1; k <= r + 2; ++k) {
     if (p.row_kind[k] != RowKind::friction || p.friction_row[k] != static_cast<int>(r)) return false;
-    if (p.row_body[2 * k] != p.row_body[2 * r] || p.row_body[2 * k + 1] != p.row_body[2 * r + 1])
-      return false;
+    if (!same_bodies(p, k, r)) return false;
   }
   return true;
 }
@@ -157,7 +172,8 @@ std::string find_turned_box_error(const StepProblem& p, std::size_t r) {
 
 std::string find_row_error(const StepProblem& p) {
   for (std::size_t r = 0; r < p.rhs.size(); ++r) {
-    for (const auto find : {find_body_error, find_bound_error, find_kind_error, find_turned_box_error}) {
+    for (const auto find :
+         {find_body_error, find_bound_error, find_kind_error, find_turned_box_error, find_pair_error}) {
       if (std::string error = find(p, r); !error.empty()) return error;
     }
   }

@@ -59,7 +59,8 @@ struct StepProblem {
 };
 
 // Empty when the arrays are consistent, else one line that names the array, the index, the value and what is
-// allowed: shapes, finite numbers, body ids in range, lo <= hi, C >= 0, positive definite mass blocks.
+// allowed: shapes, finite numbers, body ids in range, lo <= hi, C >= 0, positive definite mass blocks, arrays
+// that speak of the same row, contact or constraint in agreement.
 std::string find_problem_error(const StepProblem& problem);
 
 }  // namespace cleave

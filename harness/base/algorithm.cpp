@@ -14,17 +14,25 @@ using Given = std::map<std::string, std::string>;
   throw std::invalid_argument(option + ": " + text);
 }
 
-Given read_given(const std::string& option, const std::string& text) {
-  Given given;
+// What follows each @.
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string> parts;
   for (std::size_t at = text.find('@'); at != std::string::npos;) {
     const std::size_t next = text.find('@', at + 1);
-    const std::string part = text.substr(at + 1, next == std::string::npos ? next : next - at - 1);
+    parts.push_back(text.substr(at + 1, next == std::string::npos ? next : next - at - 1));
+    at = next;
+  }
+  return parts;
+}
+
+Given read_given(const std::string& option, const std::string& text) {
+  Given given;
+  for (const std::string& part : parts_of(text)) {
     const std::size_t equals = part.find('=');
     if (equals == 0 || equals == std::string::npos)
       reject(option, "'" + text + "': write name@parameter=value, not '@" + part + "'");
     if (!given.emplace(part.substr(0, equals), part.substr(equals + 1)).second)
       reject(option, "'" + text + "': " + part.substr(0, equals) + " is given twice");
-    at = next;
   }
   return given;
 }
@@ -71,6 +79,21 @@ Algorithm read_algorithm(const std::string& option, const std::string& text,
     }
   }
   return {text, name, Settings(std::move(values))};
+}
+
+std::string text_with_content(const std::string& text, std::span<const Parameter> parameters,
+                              const std::string& fingerprint) {
+  std::string known = algorithm_name(text) + "@" + fingerprint;
+  for (const std::string& part : parts_of(text)) {
+    const auto row = std::ranges::find(parameters, part.substr(0, part.find('=')), &Parameter::name);
+    if (row == parameters.end() || row->kind != Parameter::Kind::path) known += "@" + part;
+  }
+  return known;
+}
+
+std::string fingerprint_of(const std::string& text) {
+  const std::vector<std::string> parts = parts_of(text);
+  return parts.empty() || parts.front().find('=') != std::string::npos ? "" : parts.front();
 }
 
 Settings defaults_of(const AlgorithmEntry& entry) {

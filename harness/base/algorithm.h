@@ -21,6 +21,10 @@ struct AlgorithmEntry {
   const char* help;       // one line
   const char* reference;  // where it is described
   std::vector<Parameter> parameters = {};
+  // Of an algorithm that reads files, null for all others: reads and checks what its parameters name and
+  // returns a fingerprint of the content, which stands in texts and run ids where a path would. Throws
+  // std::invalid_argument with one line that begins with the file.
+  std::string (*content)(const Settings& settings) = nullptr;
 };
 
 // An algorithm with a value for each of its parameters.
@@ -43,6 +47,14 @@ std::string algorithm_name(const std::string& text);
 Algorithm read_algorithm(const std::string& option, const std::string& text,
                          std::span<const Parameter> parameters,
                          const std::map<std::string, std::string>& common, const ParameterOwners& owners);
+
+// "file@path=a/b.txt@x=1" as "file@1f2e3d4c5b6a7988@x=1": equal contents are one algorithm, wherever they
+// lie.
+std::string text_with_content(const std::string& text, std::span<const Parameter> parameters,
+                              const std::string& fingerprint);
+
+// The fingerprint of such a text; empty where it has none.
+std::string fingerprint_of(const std::string& text);
 
 // The defaults of all parameters that have one.
 Settings defaults_of(const AlgorithmEntry& entry);

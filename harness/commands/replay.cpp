@@ -94,6 +94,9 @@ StepRecord columns_of(const ProblemFile& file, const std::string& path, const Re
 void store(const Combination& combination, const StepRecord& row, const Outcome& outcome,
            bool skip_small_islands, ProblemFile& file) {
   const std::string label = combination.name().label();
+  file.solutions.erase(label);
+  file.partitions.erase(label);
+  if (!outcome.solved()) return;
   file.solutions[label] = {row.solver,
                            row.strategy,
                            row.kernel,
@@ -102,7 +105,6 @@ void store(const Combination& combination, const StepRecord& row, const Outcome&
                            outcome.verdict.residual_m_per_s,
                            outcome.solution.impulse,
                            outcome.verdict.velocity};
-  file.partitions.erase(label);
   if (!outcome.part_of_body.empty())
     file.partitions[label] = stored_partition(combination.partitioner(), combination.refiner(),
                                               skip_small_islands, outcome.part_of_body);

@@ -62,9 +62,13 @@ StoredPartition stored_partition(const Algorithm& partitioner, const Algorithm& 
   return stored;
 }
 
+Algorithm read_stored_refiner(const StoredPartition& partition) {
+  return read_stored(partition, "refiner", partition.refiner, kOfRefiner);
+}
+
 SplitSetup read_split_setup(const StoredPartition& partition) {
   SplitSetup setup{read_stored(partition, "partitioner", partition.partitioner, ""),
-                   read_stored(partition, "refiner", partition.refiner, kOfRefiner)};
+                   read_stored_refiner(partition)};
   const StoredParameter* skip = find_stored(partition, kSkipSmallIslands);
   setup.skip_small_islands = skip != nullptr && skip->text == "true";
   return setup;

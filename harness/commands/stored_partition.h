@@ -22,4 +22,7 @@ struct SplitSetup {
 // of another type or outside its range.
 SplitSetup read_split_setup(const StoredPartition& partition);
 
+// Its refiner alone; the same errors.
+Algorithm read_stored_refiner(const StoredPartition& partition);
+
 }  // namespace cleave

@@ -6,6 +6,7 @@
 #include <functional>
 #include <numeric>
 #include <optional>
+#include <regex>
 #include <stdexcept>
 
 #include "harness/base/hash.h"
@@ -15,6 +16,7 @@
 #include "harness/experiment/problem_graph.h"
 #include "harness/experiment/splitter.h"
 #include "harness/experiment/step_columns.h"
+#include "partition/part_file.h"
 #include "solver/problem_hash.h"
 #include "solver/residual.h"
 
@@ -60,9 +62,33 @@ std::string metrics_text(const PartitionMetrics& metrics) {
          std::to_string(metrics.interface_rows) + " interface rows";
 }
 
-void check_split(const StepProblem& problem, const StoredPartition& partition, const std::string& subject,
-                 CheckList& list) {
+// Parts that came from files, known by a fingerprint of the files alone. As they were in one file for all
+// steps they can be compared with it; refined ones, and those of one file a step, cannot.
+void check_outside_parts(const StoredPartition& partition, const std::string& counted,
+                         const std::string& subject, CheckList& list) {
+  const std::string fingerprint = fingerprint_of(partition.partitioner);
+  static const std::regex form("(steps-)?[0-9a-f]{16}");
+  std::string error;
+  if (!std::regex_match(fingerprint, form))
+    error = "; fingerprint of the files = '" + fingerprint + "', allowed: 16 hexadecimal digits";
+  try {
+    read_stored_refiner(partition);
+  } catch (const std::invalid_argument& wrong) {
+    error += std::string("; ") + wrong.what();
+  }
+  list.add(error.empty(), subject, counted + "; from files, refiner " + partition.refiner + error);
+  if (!error.empty()) return;
+  if (fingerprint.starts_with("steps-") || partition.refiner != "none")
+    return CheckList::note(subject, "the files are not here, so its parts cannot be made again");
+  const std::string found = part_ids_fingerprint(partition.part_of_body);
+  list.add(found == fingerprint, subject, "part ids have the fingerprint " + found + " of their file");
+}
+
+void check_split(const StepProblem& problem, const StoredPartition& partition, int step,
+                 const std::string& subject, CheckList& list) {
   const std::string counted = metrics_text(measure_partition(body_graph_of(problem), partition.part_of_body));
+  if (content_of("partitioner", algorithm_name(partition.partitioner)) != nullptr)
+    return check_outside_parts(partition, counted, subject, list);
   std::optional<Splitter> splitter;
   try {
     const SplitSetup setup = read_split_setup(partition);
@@ -71,7 +97,7 @@ void check_split(const StepProblem& problem, const StoredPartition& partition, c
     list.add(false, subject, counted + "; cannot be split again: " + error.what());
     return;
   }
-  const std::vector<int> again = splitter->run(problem).parts.part_of_body;
+  const std::vector<int> again = splitter->run(problem, step).parts.part_of_body;
   const int moved = static_cast<int>(std::inner_product(
       again.begin(), again.end(), partition.part_of_body.begin(), 0, std::plus<>(), std::not_equal_to<>()));
   list.add(
@@ -80,11 +106,11 @@ void check_split(const StepProblem& problem, const StoredPartition& partition, c
 }
 
 void check_partition(const std::string& label, const StepProblem& problem, const StoredPartition& partition,
-                     const std::string& subject, CheckList& list) {
+                     int step, const std::string& subject, CheckList& list) {
   const std::string pair = partition.partitioner + "+" + partition.refiner;
   list.add(label == pair || label.starts_with(pair + "+"), subject,
            "label of partitioner and refiner " + pair);
-  if (check_part_ids(partition, subject, list)) check_split(problem, partition, subject, list);
+  if (check_part_ids(partition, subject, list)) check_split(problem, partition, step, subject, list);
 }
 
 void check_friction_model(const std::string& model, const std::string& subject, CheckList& list) {
@@ -129,14 +155,15 @@ void check_problem_file(const std::filesystem::path& path, const ProblemFile& fi
                                      std::to_string(problem.body_count()) + " bodies, " +
                                      std::to_string(problem.row_count()) + " rows, hash " +
                                      hex(problem_hash(problem)));
-  check_friction_model(file.friction_model, path.string(), list);
+  if (file.friction_model != kUnknownProvenance)
+    check_friction_model(file.friction_model, path.string(), list);
   for (const auto& [label, solution] : file.solutions) {
     const std::string subject = path.string() + " solution/" + label;
     check_solution_label(label, solution, subject, list);
     check_solution(problem, solution, subject, list);
   }
   for (const auto& [label, partition] : file.partitions)
-    check_partition(label, problem, partition, path.string() + " partition/" + label, list);
+    check_partition(label, problem, partition, file.step, path.string() + " partition/" + label, list);
 }
 
 }  // namespace cleave

@@ -74,12 +74,13 @@ std::span<const Keywords> keywords() {
   return table;
 }
 
-// Parameters without a default that nobody gave.
+// Parameters without a default that nobody gave. A file is that of one algorithm and given for no other.
 std::vector<std::string> missing_parameters(const std::string& option, const std::string& name,
                                             const CommonValues& common) {
   std::vector<std::string> missing;
   for (const Parameter& parameter : parameters_of(option, name))
-    if (parameter.default_value.empty() && !common.contains(parameter.name))
+    if (parameter.default_value.empty() &&
+        (parameter.kind == Parameter::Kind::path || !common.contains(parameter.name)))
       missing.push_back(parameter.name);
   return missing;
 }
@@ -130,12 +131,6 @@ std::vector<CommonParameter> collect_common() {
   return all;
 }
 
-// A scene that lies in a file is known by what the file says, not by where it lies.
-void name_content(Algorithm& scene) {
-  const std::string id = scene_content_id(scene_row(scene), scene.settings);
-  if (!id.empty()) scene.text = scene.name + "@" + id;
-}
-
 }  // namespace
 
 std::span<const AlgorithmKind> algorithm_kinds() {
@@ -171,15 +166,24 @@ std::vector<Parameter> parameters_of(const std::string& option, const std::strin
   throw std::logic_error("--" + option + " has no " + name);
 }
 
+ContentReader content_of(const std::string& option, const std::string& name) {
+  for (const AlgorithmKind& kind : algorithm_kinds())
+    if (kind.option == option)
+      for (const AlgorithmEntry& entry : kind.entries)
+        if (entry.name == name) return entry.content;
+  return nullptr;
+}
+
 void check_algorithm(const std::string& option, const std::string& text) {
   check_name("--" + option, algorithm_name(text), names_for(option));
 }
 
 Algorithm read_named(const std::string& option, const std::string& text, const CommonValues& common) {
   check_algorithm(option, text);
-  Algorithm algorithm =
-      read_algorithm("--" + option, text, parameters_of(option, algorithm_name(text)), common, owners_of);
-  if (option == "scene") name_content(algorithm);
+  const std::vector<Parameter> parameters = parameters_of(option, algorithm_name(text));
+  Algorithm algorithm = read_algorithm("--" + option, text, parameters, common, owners_of);
+  if (const ContentReader content = content_of(option, algorithm.name))
+    algorithm.text = text_with_content(text, parameters, content(algorithm.settings));
   return algorithm;
 }
 

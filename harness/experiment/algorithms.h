@@ -36,7 +36,9 @@ using CommonValues = std::map<std::string, std::string>;
 void check_algorithm(const std::string& option, const std::string& text);
 
 // Reads "mindp@max-bodies=50" for --option. Throws std::invalid_argument with one line: an unknown name (with
-// the nearest one), a parameter of another algorithm (with its owner), a value that is not allowed.
+// the nearest one), a parameter of another algorithm (with its owner), a value that is not allowed, a file
+// that is not what the algorithm reads. An algorithm that reads files is known by their content:
+// "file@path=a.txt" has the text "file@1f2e3d4c5b6a7988".
 Algorithm read_named(const std::string& option, const std::string& text, const CommonValues& common = {});
 
 // Reads a list: items as above, none twice, and where the kind has them the keywords
@@ -47,6 +49,10 @@ std::vector<Algorithm> read_list(const std::string& option, const std::string& t
 
 // The parameters of a name of that option. Throws std::logic_error for a name that is none.
 std::vector<Parameter> parameters_of(const std::string& option, const std::string& name);
+
+// Fingerprints the files of an algorithm; null for one that reads none (AlgorithmEntry::content).
+using ContentReader = std::string (*)(const Settings& settings);
+ContentReader content_of(const std::string& option, const std::string& name);
 
 // A parameter that is an option of its own: those of all kinds but scenes, whose parameters are options of
 // scenes, and files, which belong to one algorithm at a time. Rows that share a name share the declaration.

@@ -36,6 +36,15 @@ void judge_outcome(const StepProblem& problem, Outcome& outcome) {
   }
 }
 
+// Nothing was found: what is left is where the solve would have started.
+Outcome unsolved(const StepProblem& problem, SolveStatus status, const std::string& why) {
+  Outcome outcome;
+  outcome.status = outcome.summary.status = status;
+  outcome.summary.message = why;
+  outcome.solution = {problem.warm_impulse, problem.free_velocity};
+  return outcome;
+}
+
 bool same_bytes(std::span<const double> a, std::span<const double> b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
@@ -102,12 +111,18 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
   }
 }
 
-std::optional<Split> Combination::split(const StepProblem& problem) const {
-  return splitter_ ? std::optional(splitter_->run(problem)) : std::nullopt;
+std::optional<Split> Combination::split(const StepProblem& problem, int step) const {
+  return splitter_ ? std::optional(splitter_->run(problem, step)) : std::nullopt;
 }
 
-Combination::Repeat Combination::repeat(const StepProblem& problem) {
-  Repeat repeat{split(problem), {}};
+Combination::Repeat Combination::repeat(const StepProblem& problem, int step) {
+  Repeat repeat;
+  try {
+    repeat.split = split(problem, step);
+  } catch (const CannotSplit& error) {
+    repeat.outcome = unsolved(problem, SolveStatus::refused, error.what());
+    return repeat;
+  }
   const std::vector<int> parts = solver_parts(repeat.split, problem);
   Outcome& outcome = repeat.outcome;
   outcome.solution.impulse = problem.warm_impulse;
@@ -118,9 +133,7 @@ Combination::Repeat Combination::repeat(const StepProblem& problem) {
     outcome.cores = meter.stop();
     outcome.status = outcome.summary.status;
   } catch (const std::bad_alloc&) {
-    outcome.status = outcome.summary.status = SolveStatus::out_of_memory;
-    outcome.summary.message = "no memory for the solve";
-    outcome.solution = {problem.warm_impulse, problem.free_velocity};
+    outcome = unsolved(problem, SolveStatus::out_of_memory, "no memory for the solve");
   }
   return repeat;
 }
@@ -133,8 +146,8 @@ void Combination::set_names(StepRecord& row) const {
     row.add_parameters(algorithm->settings);
 }
 
-Outcome Combination::solve(const StepProblem& problem) {
-  Outcome outcome = repeat(problem).outcome;
+Outcome Combination::solve(const StepProblem& problem, int step) {
+  Outcome outcome = repeat(problem, step).outcome;
   judge_outcome(problem, outcome);
   return outcome;
 }
@@ -142,7 +155,7 @@ Outcome Combination::solve(const StepProblem& problem) {
 Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   std::vector<Repeat> repeats;
   for (int i = 0; i < repeats_; ++i) {
-    repeats.push_back(repeat(problem));
+    repeats.push_back(repeat(problem, row.step));
     if (!repeats.back().outcome.solved()) break;  // a failure has no time to take the median of
     // What one solve leaves in the solver's scratch must not reach the next, or repeats would time another
     // problem.
@@ -157,11 +170,11 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   row.repeat_count = static_cast<int>(repeats.size());
   row.status = to_string(chosen.outcome.status);
   row.ode_messages += chosen.outcome.summary.engine_messages;
-  if (splitter_) set_split(problem, repeats, row);
+  if (repeats.front().split) set_split(problem, repeats, row);
   row.set_summary(chosen.outcome.summary);
   row.peak_memory_mb = peak_memory_mb();
   set_verdict(problem, chosen.outcome, row);
-  if (splitter_) chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
+  if (chosen.split) chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
   if (chosen.outcome.solved())
     set_measures(problem, chosen.split ? &chosen.split->graph : nullptr, chosen.outcome, row);
   if (!failed) {
@@ -175,9 +188,13 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   return std::move(chosen.outcome);
 }
 
-ConvergedBounds Combination::converge_bounds(StepProblem& problem) {
+ConvergedBounds Combination::converge_bounds(StepProblem& problem, int step) {
   Solution solution{problem.warm_impulse, {}};
-  return converge_friction_bounds(problem, *solver_, solver_parts(split(problem), problem), solution);
+  try {
+    return converge_friction_bounds(problem, *solver_, solver_parts(split(problem, step), problem), solution);
+  } catch (const CannotSplit&) {
+    return {};  // the solve that follows says why
+  }
 }
 
 std::vector<Combination> make_combinations(const RunOptions& options, const StepContext& context) {

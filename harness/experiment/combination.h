@@ -62,24 +62,26 @@ class Combination {
   // Names and parameters.
   void set_names(StepRecord& row) const;
 
-  // Splits and solves once from the problem's warm start.
-  Outcome solve(const StepProblem& problem);
+  // Splits and solves once from the problem's warm start. step: of the run. A partitioner that cannot split
+  // this step makes the outcome `refused`.
+  Outcome solve(const StepProblem& problem, int step);
 
-  // Splits and solves options.repeats times from the problem's warm start and fills the row's columns of
-  // partition, solve, times and verdict. The stage times are those of the solve with the median time, so that
-  // they add up.
+  // Splits and solves options.repeats times from the problem's warm start, at the row's step, and fills the
+  // row's columns of partition, solve, times and verdict. The stage times are those of the solve with the
+  // median time, so that they add up.
   Outcome measure(const StepProblem& problem, StepRecord& row);
 
-  // `box-converged`: iterates the friction bounds of the problem with this combination's solver.
-  ConvergedBounds converge_bounds(StepProblem& problem);
+  // `box-converged`: iterates the friction bounds of the problem with this combination's solver. Where the
+  // step cannot be split they stay as predicted, unconverged.
+  ConvergedBounds converge_bounds(StepProblem& problem, int step);
 
  private:
   struct Repeat {
-    std::optional<Split> split;  // none for a solver that ignores parts
+    std::optional<Split> split;  // none for a solver that ignores parts and for a step that cannot be split
     Outcome outcome;
   };
-  std::optional<Split> split(const StepProblem& problem) const;
-  Repeat repeat(const StepProblem& problem);
+  std::optional<Split> split(const StepProblem& problem, int step) const;
+  Repeat repeat(const StepProblem& problem, int step);
 
   CombinationName name_;
   Algorithm partitioner_, refiner_, solver_named_;

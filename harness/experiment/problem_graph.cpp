@@ -4,7 +4,7 @@
 
 namespace cleave {
 
-BodyGraph body_graph_of(const StepProblem& problem) {
+BodyGraph body_graph_of(const StepProblem& problem, std::optional<int> step) {
   std::vector<double> mass_kg(problem.body_count());
   for (int i = 0; i < problem.body_count(); ++i) mass_kg[i] = problem.mass[36 * i];
 
@@ -14,7 +14,7 @@ BodyGraph body_graph_of(const StepProblem& problem) {
       links.push_back({problem.row_body[2 * r], problem.row_body[2 * r + 1], 0});
     ++links.back().rows;
   }
-  return BodyGraph(mass_kg, links);
+  return BodyGraph(mass_kg, links, step);
 }
 
 }  // namespace cleave

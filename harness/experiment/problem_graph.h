@@ -2,13 +2,16 @@
 // replayed step.
 #pragma once
 
+#include <optional>
+
 #include "partition/body_graph.h"
 #include "solver/step_problem.h"
 
 namespace cleave {
 
 // One link per constraint (a joint or one contact point: adjacent rows of equal row_constraint), with its
-// number of rows. A body's mass is the first diagonal entry of its mass block.
-BodyGraph body_graph_of(const StepProblem& problem);
+// number of rows. A body's mass is the first diagonal entry of its mass block. step: which one of its run the
+// problem is.
+BodyGraph body_graph_of(const StepProblem& problem, std::optional<int> step = std::nullopt);
 
 }  // namespace cleave

@@ -55,7 +55,7 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
     // Converged bounds are found by solving, with ODE's own solvers too.
     context_ = {&world, contacts, options_.extract.erp, options_.extract.cfm};
     watch.lap_ms();
-    predict_bounds(problem, advancing);
+    predict_bounds(problem, advancing, step);
     common.t_predict_ms = watch.lap_ms();
     common.ode_messages = world.take_message_count();
 
@@ -69,7 +69,7 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
     if (observe_) observe_({context_, problem, step, measured.rows, measured.outcomes});
 
     // One solution moves the bodies, and its impulses are where the next step starts from.
-    const Outcome advance = advancing.solve(problem);
+    const Outcome advance = advancing.solve(problem, step);
     if (advance.can_advance()) {
       world.advance(advance.verdict.velocity, options_.extract.h_s);
       memory.remember(contacts, problem, advance.solution.impulse);
@@ -127,12 +127,12 @@ int Simulation::total_steps() const {
 }
 
 // What friction rows may carry is fixed before anyone solves, so that all combinations have the same problem.
-void Simulation::predict_bounds(StepProblem& problem, Combination& advancing) {
+void Simulation::predict_bounds(StepProblem& problem, Combination& advancing, int step) {
   const FrictionModel model = options_.extract.friction;
   if (model != FrictionModel::box && model != FrictionModel::box_converged) return;
   predict_friction_bounds(problem);
   if (model == FrictionModel::box) return;
-  if (!advancing.converge_bounds(problem).converged) ++summary_.unconverged_bounds;
+  if (!advancing.converge_bounds(problem, step).converged) ++summary_.unconverged_bounds;
 }
 
 Simulation::Measured Simulation::measure(std::span<Combination> combinations, const StepProblem& problem,

@@ -80,10 +80,10 @@ int Splitter::most_bodies(const Partition& grown) const {
   return largest;
 }
 
-Split Splitter::run(const StepProblem& problem) const {
+Split Splitter::run(const StepProblem& problem, std::optional<int> step) const {
   Split split;
   Stopwatch watch;
-  split.graph = body_graph_of(problem);
+  split.graph = body_graph_of(problem, step);
   split.graph_ms = watch.lap_ms();
   split.before = grow(split.graph);
   split.partition_ms = watch.lap_ms();

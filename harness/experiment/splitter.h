@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "harness/base/algorithm.h"
@@ -26,7 +27,8 @@ class Splitter {
   // Throws std::invalid_argument for --skip-small-islands with a partitioner that has no max-bodies.
   Splitter(const Algorithm& partitioner, const Algorithm& refiner, bool skip_small_islands);
 
-  Split run(const StepProblem& problem) const;
+  // step: which one of its run the problem is. Throws CannotSplit where the partitioner does.
+  Split run(const StepProblem& problem, std::optional<int> step = std::nullopt) const;
 
  private:
   Partition grow(const BodyGraph& graph) const;

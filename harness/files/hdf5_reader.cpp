@@ -1,5 +1,6 @@
 #include "harness/files/hdf5_reader.h"
 
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 
@@ -25,6 +26,21 @@ std::string type_text(hid_t type) {
 bool matches(hid_t type, const Hdf5Element& element) {
   if (H5Tget_class(type) != element.type_class || H5Tget_size(type) != element.size) return false;
   return element.type_class != H5T_INTEGER || (H5Tget_sign(type) != H5T_SGN_NONE) == element.is_signed;
+}
+
+// Types that hold every value that the element asked for can have, or more; see the head of the header.
+bool converts(hid_t type, const Hdf5Element& element) {
+  const std::size_t size = H5Tget_size(type);
+  if (H5Tget_class(type) != element.type_class) return false;
+  if (element.type_class == H5T_FLOAT) return size == 4 && element.size == 8;
+  return H5Tget_sign(type) != H5T_SGN_NONE && (size == 4 || size == 8);
+}
+
+std::string allowed_types(const Hdf5Element& element) {
+  std::string text = element.name;
+  if (element.type_class == H5T_INTEGER)
+    return text + (element.size == 4 ? "" : ", 32-bit signed integer") + ", 64-bit signed integer";
+  return text + (element.size == 8 ? ", 32-bit float" : "");
 }
 
 herr_t collect_name(hid_t, const char* name, const H5L_info_t*, void* names) {
@@ -100,8 +116,8 @@ Hdf5Handle Hdf5Reader::open_array(const std::string& name, const Hdf5Element& el
                                   const Hdf5Shape& shape) const {
   Hdf5Handle dataset = open_dataset(name);
   const Hdf5Handle type(H5Dget_type(dataset.id()), H5Tclose);
-  if (!matches(type.id(), element))
-    fail("type of " + full(name) + " = " + type_text(type.id()) + ", allowed: " + element.name);
+  if (!matches(type.id(), element) && !converts(type.id(), element))
+    fail("type of " + full(name) + " = " + type_text(type.id()) + ", allowed: " + allowed_types(element));
   const Hdf5Shape found = shape_of(dataset, name);
   if (found != shape)
     fail("shape of " + full(name) + " = " + hdf5_shape_text(found) + ", allowed: " + hdf5_shape_text(shape));
@@ -109,9 +125,28 @@ Hdf5Handle Hdf5Reader::open_array(const std::string& name, const Hdf5Element& el
 }
 
 void Hdf5Reader::read_array(const Hdf5Handle& dataset, const std::string& name, const Hdf5Element& element,
-                            void* values) const {
+                            void* values, std::size_t count) const {
+  const Hdf5Handle type(H5Dget_type(dataset.id()), H5Tclose);
+  if (element.type_class == H5T_INTEGER && !matches(type.id(), element))
+    return read_integers(dataset, name, element, values, count);
   if (H5Dread(dataset.id(), element.memory(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0)
     fail(full(name) + " cannot be read: the file is damaged");
+}
+
+// The library itself would cut off what does not fit.
+void Hdf5Reader::read_integers(const Hdf5Handle& dataset, const std::string& name, const Hdf5Element& element,
+                               void* values, std::size_t count) const {
+  std::vector<long long> wide(count);
+  if (H5Dread(dataset.id(), H5T_NATIVE_LLONG, H5S_ALL, H5S_ALL, H5P_DEFAULT, wide.data()) < 0)
+    fail(full(name) + " cannot be read: the file is damaged");
+  const int bits = static_cast<int>(8 * element.size) - (element.is_signed ? 1 : 0);
+  const long long most = (1LL << bits) - 1, least = element.is_signed ? -most - 1 : 0;
+  for (std::size_t i = 0; i < count; ++i)
+    if (wide[i] < least || wide[i] > most)
+      fail(full(name) + "[" + std::to_string(i) + "] = " + std::to_string(wide[i]) +
+           ", allowed: " + std::to_string(least) + " to " + std::to_string(most));
+  H5Tconvert(H5T_NATIVE_LLONG, element.memory(), count, wide.data(), nullptr, H5P_DEFAULT);
+  std::memcpy(values, wide.data(), count * element.size);
 }
 
 Hdf5Handle Hdf5Reader::open_attribute(const std::string& name) const {

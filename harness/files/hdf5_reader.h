@@ -4,7 +4,9 @@
 //     rocks.h5: dataset rhs is missing
 //     rocks.h5: shape of jacobian = (10, 11), allowed: (10, 12)
 //     rocks.h5: solution/a/impulse cannot be read: the file is damaged
-// Nothing is converted silently: an array must have the element type asked for (in either byte order).
+// An array must have the element type asked for, in either byte order, or one that converts without loss:
+// 32-bit floats where 64-bit ones are asked for, and signed integers of 32 and 64 bits for any integers, each
+// of which must fit. Nothing else is converted.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +39,7 @@ class Hdf5Reader {
     std::size_t count = 1;
     for (const std::size_t extent : shape) count *= extent;
     values.resize(count);
-    if (count > 0) read_array(open, dataset, hdf5_element(Number{}), values.data());
+    if (count > 0) read_array(open, dataset, hdf5_element(Number{}), values.data(), count);
   }
 
   // Attributes are one number or one text each. Any integer or float type does, where the value fits.
@@ -65,7 +67,9 @@ class Hdf5Reader {
   Hdf5Shape shape_of(const Hdf5Handle& dataset, const std::string& name) const;
   Hdf5Handle open_array(const std::string& name, const Hdf5Element& element, const Hdf5Shape& shape) const;
   void read_array(const Hdf5Handle& dataset, const std::string& name, const Hdf5Element& element,
-                  void* values) const;
+                  void* values, std::size_t count) const;
+  void read_integers(const Hdf5Handle& dataset, const std::string& name, const Hdf5Element& element,
+                     void* values, std::size_t count) const;
   Hdf5Handle open_attribute(const std::string& name) const;
   void read_attribute(const Hdf5Handle& attribute, const std::string& name, hid_t memory_type,
                       void* value) const;

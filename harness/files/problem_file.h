@@ -1,32 +1,8 @@
 // A recorded step problem in one HDF5 file (schema "cleave-problem-1"): all that a solver needs to solve the
 // step again elsewhere, where the bodies were, and solutions that were found. n bodies, m constraint rows.
 //
-// Root attributes: schema, scene, step, seed, h_s (step in s), friction_model, erp, cfm.
-// Datasets, little endian:
-//     mass                  (n,6,6)
-//     free_velocity         (n,6)
-//     row_body              (m,2) int32, -1 = static
-//     jacobian              (m,12)
-//     rhs, compliance       (m)
-//     lower, upper          (m), infinite allowed
-//     row_kind              (m) uint8: 0 bilateral, 1 normal, 2 friction
-//     friction_row          (m) int32, the normal row or -1
-//     friction_coefficient  (m)
-//     row_constraint        (m) int32
-//     contact_point         (m,3)
-//     warm_impulse          (m)
-// as in solver/step_problem.h, 64-bit floats where no type is given, and
-//     position              (n,3) m
-//     orientation           (n,4) quaternion w x y z
-//     body_group            (n) int32, optional
-//     shape                 optional group for drawing, see ProblemShapes
-// Solutions, any number of each, by label (see combination_label):
-//     solution/LABEL   impulse (m)   velocity (n,6) = v0 + M^-1 J^T impulse
-//                      attributes solver, strategy, kernel, partitioner, refiner, residual_m_per_s
-//     partition/LABEL  part_of_body (n) int32
-//                      attributes partitioner, refiner and every parameter that shaped it (max_bodies,
-//                      tau_mix, edge_weight, ...), the partitioner's as they are called, the refiner's where
-//                      the partitioner has another value as refiner_edge_weight, and skip_small_islands
+// PROBLEM_FILES.md says what is in it, what may be left out and which types are read; a program of 30 lines
+// there writes one.
 #pragma once
 
 #include <cstdint>
@@ -42,6 +18,9 @@
 #include "solver/step_problem.h"
 
 namespace cleave {
+
+// The scene and friction model of a file that names none.
+inline constexpr const char* kUnknownProvenance = "-";
 
 struct StoredSolution {
   std::string solver, strategy, kernel, partitioner, refiner;  // partitioner and refiner "-": ignores parts
@@ -66,13 +45,13 @@ struct StoredPartition {
 
 struct ProblemFile {
   StepProblem problem;
-  std::string scene;
+  std::string scene = kUnknownProvenance;
   int step = 0;
   std::uint64_t seed = 0;
-  std::string friction_model;       // a name of friction_models()
-  double erp = 0, cfm = 0;          // of the world; joints may have their own
-  std::vector<double> position;     // (n, 3)
-  std::vector<double> orientation;  // (n, 4)
+  std::string friction_model = kUnknownProvenance;  // or one of friction_models()
+  double erp = 0, cfm = 0;                          // of the world; joints may have their own
+  std::vector<double> position;                     // (n, 3)
+  std::vector<double> orientation;                  // (n, 4)
   std::optional<std::vector<int>> body_group;
   std::optional<ProblemShapes> shapes;
   std::map<std::string, StoredSolution> solutions;    // by label

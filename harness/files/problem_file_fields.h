@@ -1,6 +1,6 @@
 // What a problem file holds, once: reader and writer both walk these lists. See problem_file.h.
 //
-// A visitor is called with a name, a member and, for arrays, the shape.
+// A visitor is called with a name, a member and, for arrays, the shape, and whether a file must have it.
 #pragma once
 
 #include "harness/files/hdf5_types.h"
@@ -8,40 +8,45 @@
 
 namespace cleave {
 
+// optional: provenance, or told by the other arrays (problem_file_defaults.h).
+enum class Presence { required, optional };
+
 inline const std::string kProblemSchema = "cleave-problem-1";
 
 // File: ProblemFile or const ProblemFile, and so on below.
 template <class File, class Visitor>
 void visit_attributes(File& file, Visitor&& visit) {
-  visit("scene", file.scene);
-  visit("step", file.step);
-  visit("h_s", file.problem.h_s);
-  visit("seed", file.seed);
-  visit("friction_model", file.friction_model);
-  visit("erp", file.erp);
-  visit("cfm", file.cfm);
+  using enum Presence;
+  visit("scene", file.scene, optional);
+  visit("step", file.step, optional);
+  visit("h_s", file.problem.h_s, required);
+  visit("seed", file.seed, optional);
+  visit("friction_model", file.friction_model, optional);
+  visit("erp", file.erp, optional);
+  visit("cfm", file.cfm, optional);
 }
 
 // n bodies, m rows.
 template <class File, class Visitor>
 void visit_arrays(File& file, std::size_t n, std::size_t m, Visitor&& visit) {
+  using enum Presence;
   auto& problem = file.problem;
-  visit("mass", problem.mass, Hdf5Shape{n, 6, 6});
-  visit("free_velocity", problem.free_velocity, Hdf5Shape{n, 6});
-  visit("row_body", problem.row_body, Hdf5Shape{m, 2});
-  visit("jacobian", problem.jacobian, Hdf5Shape{m, 12});
-  visit("rhs", problem.rhs, Hdf5Shape{m});
-  visit("compliance", problem.compliance, Hdf5Shape{m});
-  visit("lower", problem.lower, Hdf5Shape{m});
-  visit("upper", problem.upper, Hdf5Shape{m});
-  visit("row_kind", problem.row_kind, Hdf5Shape{m});
-  visit("friction_row", problem.friction_row, Hdf5Shape{m});
-  visit("friction_coefficient", problem.friction_coefficient, Hdf5Shape{m});
-  visit("row_constraint", problem.row_constraint, Hdf5Shape{m});
-  visit("contact_point", problem.contact_point, Hdf5Shape{m, 3});
-  visit("warm_impulse", problem.warm_impulse, Hdf5Shape{m});
-  visit("position", file.position, Hdf5Shape{n, 3});
-  visit("orientation", file.orientation, Hdf5Shape{n, 4});
+  visit("mass", problem.mass, Hdf5Shape{n, 6, 6}, required);
+  visit("free_velocity", problem.free_velocity, Hdf5Shape{n, 6}, required);
+  visit("row_body", problem.row_body, Hdf5Shape{m, 2}, required);
+  visit("jacobian", problem.jacobian, Hdf5Shape{m, 12}, required);
+  visit("rhs", problem.rhs, Hdf5Shape{m}, required);
+  visit("compliance", problem.compliance, Hdf5Shape{m}, required);
+  visit("lower", problem.lower, Hdf5Shape{m}, required);
+  visit("upper", problem.upper, Hdf5Shape{m}, required);
+  visit("row_kind", problem.row_kind, Hdf5Shape{m}, optional);
+  visit("friction_row", problem.friction_row, Hdf5Shape{m}, optional);
+  visit("friction_coefficient", problem.friction_coefficient, Hdf5Shape{m}, optional);
+  visit("row_constraint", problem.row_constraint, Hdf5Shape{m}, optional);
+  visit("contact_point", problem.contact_point, Hdf5Shape{m, 3}, optional);
+  visit("warm_impulse", problem.warm_impulse, Hdf5Shape{m}, optional);
+  visit("position", file.position, Hdf5Shape{n, 3}, optional);
+  visit("orientation", file.orientation, Hdf5Shape{n, 4}, optional);
 }
 
 // g geoms, k corners.

@@ -8,6 +8,7 @@
 #include "harness/base/numbers.h"
 #include "harness/files/hdf5_reader.h"
 #include "harness/files/problem_file.h"
+#include "harness/files/problem_file_defaults.h"
 #include "harness/files/problem_file_fields.h"
 
 namespace cleave {
@@ -57,6 +58,18 @@ auto arrays_of(const Hdf5Reader& reader) {
   };
 }
 
+// The same for members that a file may leave alone: they keep the value they have.
+auto present_attributes_of(const Hdf5Reader& reader) {
+  return [&reader](const char* name, auto& value, Presence presence) {
+    if (presence == Presence::required || reader.has_attribute(name)) reader.attribute(name, value);
+  };
+}
+auto present_arrays_of(const Hdf5Reader& reader) {
+  return [&reader](const char* name, auto& values, const Hdf5Shape& shape, Presence presence) {
+    if (presence == Presence::required || reader.has(name)) reader.array(name, shape, values);
+  };
+}
+
 void read_schema(const Hdf5Reader& reader) {
   std::string schema;
   reader.attribute("schema", schema);
@@ -64,14 +77,24 @@ void read_schema(const Hdf5Reader& reader) {
 }
 
 void read_experiment(const Hdf5Reader& reader, ProblemFile& file) {
-  visit_attributes(file, attributes_of(reader));
+  visit_attributes(file, present_attributes_of(reader));
   require(file.step >= 0, reader, "step", file.step, ">= 0");
   require(is_size(file.erp), reader, "erp", file.erp, "finite and >= 0");
   require(is_size(file.cfm), reader, "cfm", file.cfm, "finite and >= 0");
 }
 
+// Friction is part of the problem: where there is some, nothing about it has a default.
+void check_friction(const Hdf5Reader& reader, const StepProblem& problem) {
+  if (std::ranges::count(problem.row_kind, RowKind::friction) == 0) return;
+  for (const char* name : {"friction_row", "friction_coefficient"})
+    if (!reader.has(name))
+      reader.fail(std::string("dataset ") + name + " is missing, which friction rows need");
+}
+
 void read_problem(const Hdf5Reader& reader, std::size_t n, std::size_t m, ProblemFile& file) {
-  visit_arrays(file, n, m, arrays_of(reader));
+  visit_arrays(file, n, m, present_arrays_of(reader));
+  fill_left_out(file);
+  check_friction(reader, file.problem);
   const std::string error = find_problem_error(file.problem);
   if (!error.empty()) reader.fail(error);
   require_each(reader, "position", file.position, is_finite, "finite numbers");

@@ -46,8 +46,11 @@ void write_contents(const Hdf5Writer& writer, const ProblemFile& file) {
     };
   };
   writer.attribute("schema", kProblemSchema);
-  visit_attributes(file, [&](const char* name, const auto& value) { writer.attribute(name, value); });
-  visit_arrays(file, n, m, array(writer));
+  visit_attributes(file,
+                   [&](const char* name, const auto& value, Presence) { writer.attribute(name, value); });
+  visit_arrays(file, n, m, [&](const char* name, const auto& values, const Hdf5Shape& shape, Presence) {
+    writer.array(name, shape, values);
+  });
   if (file.body_group) writer.array("body_group", {n}, *file.body_group);
   if (file.shapes) {
     const Hdf5Writer group = writer.group("shape");

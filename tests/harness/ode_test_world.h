@@ -27,7 +27,7 @@ class BuiltScene : public Scene {
 
 inline std::unique_ptr<OdeWorld> make_world(Build build, double gravity = 9.81) {
   current_build = std::move(build);
-  const SceneEntry entry{"test", "", "", {}, [] { return std::unique_ptr<Scene>(new BuiltScene); }};
+  const SceneEntry entry{{"test", "", ""}, [] { return std::unique_ptr<Scene>(new BuiltScene); }};
   return std::make_unique<OdeWorld>(entry, make_scene_settings(entry, {}), 1, gravity);
 }
 

@@ -69,6 +69,18 @@ std::vector<Damage> damaged_values() {
       {"body_negative", {"row_body[2] = -2"}, p([](auto& q) { q.row_body[2] = -2; })},
       {"unknown_kind", {"row_kind[4] = 9"}, p([](auto& q) { q.row_kind[4] = static_cast<RowKind>(9); })},
       {"friction_of_no_normal", {"friction_row[5] = 0"}, p([](auto& q) { q.friction_row[5] = 0; })},
+      {"friction_of_other_bodies", {"friction_row[5] = 6", "between the same bodies"}, p([](auto& q) {
+         q.friction_row[5] = 6;
+       })},
+      {"friction_named_by_no_friction", {"friction_row[0] = 4", "-1"}, p([](auto& q) {
+         q.friction_row[0] = 4;
+       })},
+      {"coefficient_of_a_normal_row",
+       {"friction_coefficient[4] = 0.5", "0 for a row that is not friction"},
+       p([](auto& q) { q.friction_coefficient[4] = 0.5; })},
+      {"constraint_of_other_bodies", {"row_constraint[1] = 0", "which joins other bodies"}, p([](auto& q) {
+         q.row_constraint[1] = 0;
+       })},
       {"friction_outside", {"friction_row[5] = 14"}, p([](auto& q) { q.friction_row[5] = 14; })},
       {"mass_not_positive", {"mass[36] = -1", "positive definite"}, p([](auto& q) { q.mass[36] = -1; })},
       {"no_step_length", {"h_s = 0", "> 0"}, p([](auto& q) { q.h_s = 0; })},
@@ -142,10 +154,14 @@ std::vector<Damage> damaged_structure() {
        {"type of row_body = 64-bit float", "32-bit signed integer"},
        kNothing,
        replace("row_body", {14, 2}, std::vector<double>(28))},
-      {"kinds_are_wide",
-       {"type of row_kind = 32-bit signed integer", "8-bit unsigned integer"},
+      {"kinds_too_large",
+       {"row_kind[2] = 256", "0 to 255"},
        kNothing,
-       replace("row_kind", {14}, std::vector<int>(14))},
+       replace("row_kind", {14}, std::vector<int>{0, 0, 256, 0, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2})},
+      {"kinds_are_unsigned_short",
+       {"type of row_kind = 16-bit unsigned integer", "8-bit unsigned integer", "64-bit signed integer"},
+       kNothing,
+       replace("row_kind", {14}, std::vector<std::uint16_t>(14))},
       {"rhs_is_whole",
        {"type of rhs = 32-bit signed integer", "64-bit float"},
        kNothing,
@@ -190,9 +206,14 @@ std::vector<Damage> damaged_structure() {
   };
   add_missing("attribute", "schema");
   ProblemFile sample = sample_file();
-  visit_attributes(sample, [&](const char* name, const auto&) { add_missing("attribute", name); });
-  visit_arrays(sample, 5, 14,
-               [&](const char* name, const auto&, const Hdf5Shape&) { add_missing("dataset", name); });
+  visit_attributes(sample, [&](const char* name, const auto&, Presence presence) {
+    if (presence == Presence::required) add_missing("attribute", name);
+  });
+  visit_arrays(sample, 5, 14, [&](const char* name, const auto&, const Hdf5Shape&, Presence presence) {
+    if (presence == Presence::required) add_missing("dataset", name);
+  });
+  // The sample has friction rows.
+  for (const char* name : {"friction_row", "friction_coefficient"}) add_missing("dataset", name);
   return list;
 }
 

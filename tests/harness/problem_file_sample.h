@@ -115,13 +115,14 @@ inline void write_unchecked(
     const Instead& instead = [](const Hdf5Writer&, const std::string&) { return false; }) {
   Hdf5Writer writer(path);
   if (!instead(writer, "schema")) writer.attribute("schema", kProblemSchema);
-  visit_attributes(file, [&](const std::string& name, const auto& value) {
+  visit_attributes(file, [&](const std::string& name, const auto& value, Presence) {
     if (!instead(writer, name)) writer.attribute(name, value);
   });
   const std::size_t n = file.problem.body_count(), m = file.problem.row_count();
-  visit_arrays(file, n, m, [&](const std::string& name, const auto& values, const Hdf5Shape& shape) {
-    if (!instead(writer, name)) writer.array(name, shape, values);
-  });
+  visit_arrays(file, n, m,
+               [&](const std::string& name, const auto& values, const Hdf5Shape& shape, Presence) {
+                 if (!instead(writer, name)) writer.array(name, shape, values);
+               });
   if (file.shapes) {
     const Hdf5Writer group = writer.group("shape");
     visit_shape_arrays(*file.shapes, file.shapes->geom_body.size(), file.shapes->convex_points.size() / 3,

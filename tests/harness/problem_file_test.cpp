@@ -16,11 +16,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 // Every array of `a` has the bits of the same array of `b`.
 void expect_same_arrays(const ProblemFile& a, const ProblemFile& b) {
   std::vector<std::string> of_a;
   const auto bits = [](std::vector<std::string>& into) {
-    return [&into](const std::string& name, const auto& values, const Hdf5Shape& shape) {
+    return [&into](const std::string& name, const auto& values, const Hdf5Shape& shape, Presence) {
       using Number = typename std::decay_t<decltype(values)>::value_type;
       const std::string bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number));
       into.push_back(name + hdf5_shape_text(shape) + bytes);
@@ -183,6 +185,120 @@ TEST(ProblemFile, ReadsWhatOthersMayWrite) {
   EXPECT_EQ(read.scene, "rock_pile");
   EXPECT_EQ(read.step, 17);
   EXPECT_EQ(read.erp, 1);
+}
+
+// What may be left out means what the page says. The sample has joint rows, then normal and friction row of
+// every contact.
+TEST(ProblemFile, WhatIsLeftOutHasItsDefault) {
+  const TemporaryDirectory directory;
+  ProblemFile file = sample_file();
+  const auto is_optional = [&](const std::string& name) {
+    bool found = false;
+    visit_attributes(file, [&](const std::string& other, auto&, Presence presence) {
+      found |= other == name && presence == Presence::optional;
+    });
+    visit_arrays(file, 0, 0, [&](const std::string& other, auto&, const Hdf5Shape&, Presence presence) {
+      found |= other == name && presence == Presence::optional;
+    });
+    return found && !name.starts_with("friction_row") && name != "friction_coefficient";
+  };
+  write_unchecked(directory / "a.h5", file,
+                  [&](const Hdf5Writer&, const std::string& name) { return is_optional(name); });
+  const ProblemFile read = read_problem_file(directory / "a.h5");
+  EXPECT_EQ(read.scene, "-");
+  EXPECT_EQ(read.step, 0);
+  EXPECT_EQ(read.seed, 0u);
+  EXPECT_EQ(read.friction_model, "-");
+  EXPECT_EQ(read.erp, 0);
+  EXPECT_EQ(read.cfm, 0);
+  EXPECT_EQ(read.problem.row_kind, file.problem.row_kind);
+  EXPECT_EQ(read.problem.row_constraint, (std::vector<int>{0, 1, 2, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 8}));
+  EXPECT_EQ(read.problem.contact_point, std::vector<double>(3 * 14));
+  EXPECT_EQ(read.problem.warm_impulse, std::vector<double>(14));
+  EXPECT_EQ(read.position, std::vector<double>(3 * 5));
+  for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(read.orientation[i], i % 4 == 0 ? 1 : 0) << i;
+  EXPECT_EQ(read.problem.jacobian, file.problem.jacobian);
+}
+
+// Two joint rows of one joint, a joint to the next body, two contacts of one pair: five constraints.
+TEST(ProblemFile, ConstraintsThatAreLeftOutAreToldByBodiesAndKinds) {
+  const TemporaryDirectory directory;
+  ProblemFile file = sample_file(3);
+  StepProblem& p = file.problem;
+  p.row_body = {0, 1, 0, 1, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 2, -1};
+  const auto J = RowKind::bilateral, N = RowKind::normal, F = RowKind::friction;
+  p.row_kind = {J, J, J, N, F, N, F, J};
+  p.friction_row = {-1, -1, -1, -1, 3, -1, 5, -1};
+  p.friction_coefficient = {0, 0, 0, 0, 0.5, 0, 0.5, 0};
+  for (std::vector<double>* array : {&p.lower, &p.upper, &p.rhs, &p.compliance, &p.warm_impulse})
+    array->assign(8, 0.0);
+  p.upper.assign(8, 1.0);
+  p.jacobian.resize(96);
+  p.contact_point.resize(24);
+  write_unchecked(directory / "a.h5", file,
+                  [](const Hdf5Writer&, const std::string& name) { return name == "row_constraint"; });
+  EXPECT_EQ(read_problem_file(directory / "a.h5").problem.row_constraint,
+            (std::vector<int>{0, 0, 1, 2, 2, 3, 3, 4}));
+}
+
+// Where no row is friction nothing about friction need be there; a row whose bounds are those of neither
+// joint nor contact is not guessed at.
+TEST(ProblemFile, WithoutFrictionItsArraysMayBeLeftOut) {
+  const TemporaryDirectory directory;
+  ProblemFile file = sample_file(2);
+  StepProblem& p = file.problem;
+  for (const std::size_t row : {2u, 4u}) p.lower[row] = -kInfinity, p.upper[row] = kInfinity;
+  const Instead without = [](const Hdf5Writer&, const std::string& name) {
+    return name == "row_kind" || name.starts_with("friction_row") || name == "friction_coefficient";
+  };
+  write_unchecked(directory / "a.h5", file, without);
+  const StepProblem read = read_problem_file(directory / "a.h5").problem;
+  EXPECT_EQ(read.friction_row, std::vector<int>(5, -1));
+  EXPECT_EQ(read.friction_coefficient, std::vector<double>(5));
+  p.upper[2] = 7;
+  write_unchecked(directory / "b.h5", file, without);
+  EXPECT_THROW(read_problem_file(directory / "b.h5"), std::invalid_argument);
+}
+
+// 32-bit floats are exact as 64-bit ones; integers of 64 bits are read where they fit.
+TEST(ProblemFile, ReadsNarrowFloatsAndWideIntegers) {
+  const TemporaryDirectory directory;
+  ProblemFile file = sample_file();
+  std::vector<float> narrow(file.problem.rhs.begin(), file.problem.rhs.end());
+  file.problem.rhs.assign(narrow.begin(), narrow.end());
+  const auto add_wide = [&](const fs::path& path, const std::string& name, std::vector<long long> values,
+                            std::vector<hsize_t> extents) {
+    const Hdf5Handle open(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    const Hdf5Handle space(H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr),
+                           H5Sclose);
+    const Hdf5Handle set(
+        H5Dcreate2(open.id(), name.c_str(), H5T_STD_I64LE, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+        H5Dclose);
+    H5Dwrite(set.id(), H5T_NATIVE_LLONG, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+  };
+  const auto write = [&](const fs::path& path, std::vector<long long> row_body) {
+    write_unchecked(path, file, [&](const Hdf5Writer& writer, const std::string& name) {
+      if (name == "rhs") writer.array(name, {14}, narrow);
+      return name == "rhs" || name == "row_body" || name == "row_kind";
+    });
+    add_wide(path, "row_body", std::move(row_body), {14, 2});
+    std::vector<long long> kinds;
+    for (const RowKind kind : file.problem.row_kind) kinds.push_back(static_cast<int>(kind));
+    add_wide(path, "row_kind", kinds, {14});
+  };
+  std::vector<long long> bodies(file.problem.row_body.begin(), file.problem.row_body.end());
+  write(directory / "a.h5", bodies);
+  expect_same_arrays(file, read_problem_file(directory / "a.h5"));
+  bodies[4] = (1LL << 32) + bodies[4];  // the lower half is a good body
+  write(directory / "b.h5", bodies);
+  try {
+    read_problem_file(directory / "b.h5");
+    FAIL() << "no error";
+  } catch (const std::invalid_argument& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("row_body[4] = 4294967298, allowed: -2147483648 to 2147483647"), std::string::npos)
+        << text;
+  }
 }
 
 TEST(ProblemFile, InvalidProblemIsNotWritten) {

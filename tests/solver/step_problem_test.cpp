@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <functional>
 #include <limits>
 
@@ -119,6 +121,12 @@ const Damage kDamages[] = {
     {"FrictionBeyondRows", [](StepProblem& p) { p.friction_row[1] = p.row_count(); }, "friction_row[1] = "},
     {"NormalWithFrictionRow", [](StepProblem& p) { p.friction_row[3] = 0; },
      "friction_row[3] = 0, allowed: -1"},
+    {"FrictionOfOtherBodies", [](StepProblem& p) { p.row_body[2] = p.row_body[0] == 1 ? 2 : 1; },
+     "friction_row[1] = 0, allowed: a normal row between the same bodies"},
+    {"MuOfNormal", [](StepProblem& p) { p.friction_coefficient[3] = 0.5; },
+     "friction_coefficient[3] = 0.5, allowed: 0 for a row that is not friction"},
+    {"ConstraintOfOtherBodies", [](StepProblem& p) { std::ranges::fill(p.row_constraint, 0); },
+     "row_constraint[12] = 0, allowed: another id than that of the row before"},
     {"ShapeBoxAngle", [](StepProblem& p) { p.box_angle_rad = {0.1}; },
      "size of box_angle_rad = 1, allowed: "},
     {"NanBoxAngle", [](StepProblem& p) { turn_first_box(p, kNan); },
