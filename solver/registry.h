@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "harness/base/algorithm.h"
-#include "solver/kernels/kernel.h"
 #include "solver/step_solver.h"
-#include "solver/strategies/strategy.h"
 
 namespace cleave {
+
+class Kernel;    // solver/kernels/kernel.h
+class Strategy;  // solver/strategies/strategy.h
 
 struct StrategyRow : AlgorithmEntry {
   const char* only_kernel;                                      // the one kernel it runs on; nullptr: any
