@@ -1,4 +1,5 @@
 #include "scenarios/chain_drop.h"
+#include "scenarios/file_scene.h"
 #include "scenarios/ladder_chain.h"
 #include "scenarios/ladder_free.h"
 #include "scenarios/ladder_loop.h"
@@ -43,6 +44,10 @@ std::span<const SceneEntry> scenes() {
        make_ladder_loop},
       {{"ladder_free", "falling boxes that touch nothing", "scenarios/README.md", ladder_free_parameters()},
        make_ladder_free},
+      {{"file", "bodies, joints and events that a file describes", "scenarios/FILE_SCENES.md",
+        file_scene_parameters()},
+       make_file_scene,
+       file_scene_content_id},
   };
   return table;
 }

@@ -27,7 +27,13 @@ void check_scene_options(const SceneEntry& scene, const std::map<std::string, st
 Settings make_scene_settings(const SceneEntry& scene, const std::map<std::string, std::string>& given) {
   check_scene_options(scene, given);
   const auto nobody = [](const std::string&) { return std::string(); };
-  return read_algorithm("--scene", scene.name, scene.parameters, given, nobody).settings;
+  Settings settings = read_algorithm("--scene", scene.name, scene.parameters, given, nobody).settings;
+  scene_content_id(scene, settings);
+  return settings;
+}
+
+std::string scene_content_id(const SceneEntry& scene, const Settings& settings) {
+  return scene.content_id == nullptr ? "" : scene.content_id(settings);
 }
 
 }  // namespace cleave

@@ -26,6 +26,8 @@ struct SceneContent {
   // Corners (k, 3) of convex geoms in their own frames, by geom index; ODE does not give them back. Valid as
   // long as the scene lives.
   std::map<int, std::span<const dReal>> convex_corners;
+  // Name of the group that each body belongs to ("" for none); empty for a scene that names no groups.
+  std::vector<std::string> body_group;
 };
 
 class Scene {
@@ -41,6 +43,8 @@ class Scene {
 
 struct SceneEntry : AlgorithmEntry {
   std::unique_ptr<Scene> (*make)();
+  // Of a scene whose content lies outside the program, null for all others: see scene_content_id().
+  std::string (*content_id)(const Settings&) = nullptr;
 };
 
 std::span<const SceneEntry> scenes();
@@ -52,5 +56,10 @@ void check_scene_options(const SceneEntry& scene, const std::map<std::string, st
 // line naming the option, the value and the allowed range or choices; an option the scene does not have names
 // those it has.
 Settings make_scene_settings(const SceneEntry& scene, const std::map<std::string, std::string>& given);
+
+// A fingerprint of what lies outside the program, wherever it lies: 16 hexadecimal digits of the bytes of the
+// file that the settings name, "" for a scene without a file. Reads and checks all of it; throws
+// std::invalid_argument with one line.
+std::string scene_content_id(const SceneEntry& scene, const Settings& settings);
 
 }  // namespace cleave

@@ -186,6 +186,20 @@ void SceneBuilder::add_hinge_joint(dBodyID a, dBodyID b, const Vector& anchor_m,
   content_.joints.push_back(joint);
 }
 
+void SceneBuilder::add_slider_joint(dBodyID a, dBodyID b, const Vector& axis) {
+  const dJointID joint = dJointCreateSlider(world_, nullptr);
+  dJointAttach(joint, a, b);
+  dJointSetSliderAxis(joint, axis[0], axis[1], axis[2]);
+  content_.joints.push_back(joint);
+}
+
+void SceneBuilder::add_fixed_joint(dBodyID a, dBodyID b) {
+  const dJointID joint = dJointCreateFixed(world_, nullptr);
+  dJointAttach(joint, a, b);
+  dJointSetFixed(joint);
+  content_.joints.push_back(joint);
+}
+
 void SceneBuilder::add_plane(const Vector& normal, double offset_m) {
   content_.geoms.push_back(dCreatePlane(space_, normal[0], normal[1], normal[2], offset_m));
 }

@@ -70,6 +70,8 @@ class SceneBuilder {
   void add_ball_joint(dBodyID a, dBodyID b, const std::array<double, 3>& anchor_m);
   void add_hinge_joint(dBodyID a, dBodyID b, const std::array<double, 3>& anchor_m,
                        const std::array<double, 3>& axis);
+  void add_slider_joint(dBodyID a, dBodyID b, const std::array<double, 3>& axis);
+  void add_fixed_joint(dBodyID a, dBodyID b);
   // Static: everything with normal . x < offset_m is solid. normal: unit.
   void add_plane(const std::array<double, 3>& normal, double offset_m);
   // A floor at z = 0 and four walls without end at x, y = +-half_width_m.

@@ -114,7 +114,7 @@ void BlockMatrix::place_groups(const PreparedStep& step, std::span<const int> lo
   late_any_.resize(late_entries_.size());
 }
 
-void BlockMatrix::assemble(std::span<const double> d, int stage) {
+void BlockMatrix::assemble(const WeightedRows& rows, int stage) {
   cholesky_.set_zero(stage);
   double* panels = cholesky_.panels();
   for (int k = stage_local_first_[stage]; k < stage_local_first_[stage + 1]; ++k) {
@@ -125,13 +125,14 @@ void BlockMatrix::assemble(std::span<const double> d, int stage) {
       for (int r = 0; r < 6; ++r) panels[place.offset + r + c * place.leading_dimension] += mass[r + 6 * c];
     }
   }
+  const double *jacobian = rows.jacobian(), *d = rows.d().data();
   double local[144];
   for (int i = entry_first_[stage]; i < entry_first_[stage + 1]; ++i) {
     const Entry& entry = entries_[i];
     const RowGroup& group = step_->groups()[entry.group];
     double* gram = entry.late < 0 ? local : late_gram_.data() + 144 * entry.late;
-    const bool any = weighted_gram(group.row_count, step_->problem().jacobian.data() + 12 * group.first_row,
-                                   d.data() + group.first_row, gram);
+    const bool any =
+        weighted_gram(group.row_count, jacobian + 12 * group.first_row, d + group.first_row, gram);
     if (entry.late >= 0) late_any_[entry.late] = any;
     if (!any) continue;
     if (entry.stage_a == stage) add_block(panels + entry.a.offset, entry.a.leading_dimension, gram, false);

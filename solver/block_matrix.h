@@ -1,7 +1,8 @@
 // H = M + J^T D J over a set of bodies, as a sparse matrix of 6x6 blocks with its Cholesky factor.
 //
 // The pattern (which bodies share a row) is analysed once; assembly then adds the 12x12 Gram matrix of every
-// row group straight into the panels of the factor, at positions found by the analysis.
+// row group straight into the panels of the factor, at positions found by the analysis. Rows of a 3x3 block
+// of D come along its basis (row_weights.h), so that their Gram matrix is one of scalar rows.
 //
 // Stages (see block_symbolic.h) let parts of H be assembled and factored by different threads. A group
 // between a body of an early stage and one of the last stage leaves its block of the last stage to be added
@@ -14,6 +15,7 @@
 
 #include "solver/block_cholesky.h"
 #include "solver/prepared_step.h"
+#include "solver/row_weights.h"
 
 namespace cleave {
 
@@ -32,8 +34,8 @@ class BlockMatrix {
   void analyze_whole(const PreparedStep& step, std::span<const int> stage_of_body = {}, int stage_count = 1);
   bool rebind_whole(const PreparedStep& step);
 
-  // D (m) >= 0 per row of the whole problem. The last stage comes after the others.
-  void assemble(std::span<const double> d, int stage);
+  // rows: of the whole problem, with their D. The last stage comes after the others.
+  void assemble(const WeightedRows& rows, int stage);
   bool factor(int stage) { return cholesky_.factor(stage); }
 
   BlockCholesky& cholesky() { return cholesky_; }

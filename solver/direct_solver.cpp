@@ -38,10 +38,11 @@ struct Best {
 
 // Where the limit cannot be met by any impulses in double precision, a text that says so: their last digit is
 // a velocity above it. Bodies wedged between others that cannot give way need such impulses.
-std::string rounding_note(const PreparedStep& step, const Solution& solution) {
+// impulse: along the axes of the set.
+std::string rounding_note(const PreparedStep& step, std::span<const double> impulse) {
   double largest = 0;
   for (int r = 0; r < step.row_count(); ++r) {
-    largest = std::max(largest, step.diagonal()[r] * std::abs(solution.impulse[r]));
+    largest = std::max(largest, step.diagonal()[r] * std::abs(impulse[r]));
   }
   const double rounding = std::numeric_limits<double>::epsilon() * largest;
   if (!(rounding > step.exact_limit_m_per_s())) return "";
@@ -72,6 +73,7 @@ class DirectSolver : public StepSolver {
   bool uses_partition() const override { return splits_; }
 
  private:
+  std::string refuse_set(const StepProblem& problem) override;
   SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
                         Solution& solution) override;
   void analyze(const StepProblem& problem, std::span<const int> part_of_body);
@@ -107,6 +109,12 @@ Strategy& DirectSolver::strategy(std::string_view name) {
     }
   }
   throw std::logic_error("no strategy of this name: " + std::string(name));
+}
+
+// What auto picks takes every set; a named strategy must take it from its first link on.
+std::string DirectSolver::refuse_set(const StepProblem& problem) {
+  if (strategy_ == "auto" || strategy(strategy_).takes_turned_boxes()) return {};
+  return find_set_refusal("strategy", strategy_, problem);
 }
 
 // Rows between the same bodies, or at least between pairs that the analysed pattern has a place for.
@@ -215,15 +223,16 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const 
   }
   analyze(problem, part_of_body);
   state_.part_of_body = part_of_body;
+  step_.set().to_axes(solution.impulse);
   const bool solved = run_attempts(summary, problem, solution.impulse);
-  for (std::size_t r = 0; r < state_.impulse.size(); ++r) {
-    solution.impulse[r] = std::clamp(state_.impulse[r], problem.lower[r], problem.upper[r]);
-  }
+  step_.set().project(state_.impulse);
+  solution.impulse = state_.impulse;
+  step_.set().to_rows(solution.impulse);
   step_.velocity(solution.impulse, solution.velocity);
   if (!solved) {
     summary.status = SolveStatus::not_converged;
     summary.message =
-        "strategy " + summary.strategy + " stopped above the limit" + rounding_note(step_, solution);
+        "strategy " + summary.strategy + " stopped above the limit" + rounding_note(step_, state_.impulse);
     for (double v : solution.velocity) {
       if (!std::isfinite(v)) summary.status = SolveStatus::diverged;
     }

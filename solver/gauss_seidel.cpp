@@ -1,12 +1,14 @@
 #include "solver/gauss_seidel.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace cleave {
 
 void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double> impulse,
                          std::span<double> v) {
   const StepProblem& problem = step.problem();
+  assert(step.set().axes().empty());
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     for (const RowGroup& g : step.groups()) {
       // The velocities of the two bodies stay in registers over the rows of the pair.

@@ -11,7 +11,7 @@
 
 namespace cleave {
 
-// impulse (m) and v = v0 + M^-1 J^T impulse (n, 6) are updated in place.
+// Of a problem without turned boxes. impulse (m) and v = v0 + M^-1 J^T impulse (n, 6) are updated in place.
 void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double> impulse,
                          std::span<double> v);
 

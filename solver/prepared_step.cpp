@@ -30,7 +30,6 @@ void PreparedStep::prepare(const StepProblem& problem) {
   }
   mass_jacobian_.assign(12 * static_cast<std::size_t>(m), 0.0);
   diagonal_.resize(m);
-  least_relative_compliance_ = std::numeric_limits<double>::infinity();
   for (int r = 0; r < m; ++r) {
     double d = problem.compliance[r];
     for (int side = 0; side < 2; ++side) {
@@ -42,10 +41,35 @@ void PreparedStep::prepare(const StepProblem& problem) {
       d += j.dot(mj);
     }
     diagonal_[r] = d > 0 ? d : 1;  // a row of zeros constrains nothing
+  }
+  set_.bind(problem);
+  turn_diagonal();
+  least_relative_compliance_ = std::numeric_limits<double>::infinity();
+  for (int r = 0; r < m; ++r) {
     least_relative_compliance_ = std::min(least_relative_compliance_, problem.compliance[r] / diagonal_[r]);
   }
   velocity_scale_ = 1;
   for (double v : problem.free_velocity) velocity_scale_ = std::max(velocity_scale_, std::abs(v));
+}
+
+// On the rows of a turned box, d_k = f^T (J M^-1 J^T + C) f along each axis f.
+void PreparedStep::turn_diagonal() {
+  for (const WeightBlock& block : set_.axes()) {
+    for (int k = 0; k < block.row_count; ++k) {
+      const double* axis = block.basis.data() + block.row_count * k;
+      double j[12] = {}, mj[12] = {}, d = 0;
+      for (int i = 0; i < block.row_count; ++i) {
+        const int row = block.first_row + i;
+        d += axis[i] * axis[i] * problem_->compliance[row];
+        for (int c = 0; c < 12; ++c) {
+          j[c] += axis[i] * problem_->jacobian[12 * row + c];
+          mj[c] += axis[i] * mass_jacobian_[12 * row + c];
+        }
+      }
+      for (int c = 0; c < 12; ++c) d += j[c] * mj[c];
+      diagonal_[block.first_row + k] = d > 0 ? d : 1;
+    }
+  }
 }
 
 void PreparedStep::velocity(std::span<const double> impulse, std::span<double> v) const {
@@ -95,18 +119,6 @@ void PreparedStep::slack(std::span<const double> v, std::span<const double> impu
                          std::span<double> w) const {
   jacobian_times(v, w);
   for (int r = 0; r < row_count(); ++r) w[r] += problem_->compliance[r] * impulse[r] - problem_->rhs[r];
-}
-
-double PreparedStep::residual(std::span<const double> impulse, std::span<const double> w) const {
-  double worst = 0;
-  for (int r = 0; r < row_count(); ++r) {
-    const double d = diagonal_[r];
-    const double target = std::clamp(impulse[r] - w[r] / d, problem_->lower[r], problem_->upper[r]);
-    const double miss = d * std::abs(impulse[r] - target);
-    if (!(miss <= worst)) worst = miss;  // a NaN must not pass unseen
-    if (std::isnan(worst)) return worst;
-  }
-  return worst;
 }
 
 }  // namespace cleave

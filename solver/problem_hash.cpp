@@ -21,6 +21,7 @@ std::uint64_t problem_hash(const StepProblem& problem) {
   hash.add(problem.row_constraint);
   hash.add(problem.contact_point);
   hash.add(problem.warm_impulse);
+  hash.add(problem.box_angle_rad);
   return hash.value();
 }
 

@@ -20,17 +20,20 @@ namespace cleave {
 class ProximalStep {
  public:
   // Copies the problem, adds delta = relative_delta d_r to the rows with less compliance than that, and
-  // centres it at the impulses (m).
+  // centres it at the impulses (m), which are along the axes of the set. The tangent rows of a turned box
+  // share one delta, that of the larger d_r.
   void begin(const PreparedStep& step, std::span<const double> centre, double relative_delta);
 
-  // b + delta lambda: the slack of the copy at these impulses is the slack of the original.
+  // b + delta lambda, lambda along the axes: the slack of the copy at these impulses is the slack of the
+  // original.
   void recentre(std::span<const double> centre);
 
   const StepProblem& problem() const { return problem_; }
 
  private:
   StepProblem problem_;
-  std::vector<double> original_rhs_, delta_;
+  ImpulseSet set_;  // of the copy
+  std::vector<double> original_rhs_, delta_, in_rows_;
 };
 
 }  // namespace cleave

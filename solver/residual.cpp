@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -55,23 +56,49 @@ std::vector<BodyState> find_body_states(const StepProblem& problem, std::span<co
   return bodies;
 }
 
+// A row as its bounds see it: itself, or the axis of a turned box that stands in its place.
+struct AxisRow {
+  std::array<Vector6, 2> jacobian;  // of the two bodies
+  Real rhs, impulse;
+};
+
+// The row itself plus, where its contact's box is turned, what makes it an axis: of the tangents t1, t2 the
+// first becomes c t1 + s t2, the second c t2 - s t1.
+AxisRow axis_of_row(const StepProblem& problem, std::span<const double> impulse, int row) {
+  AxisRow axis = {
+      {jacobian_block(problem, row, 0), jacobian_block(problem, row, 1)}, problem.rhs[row], impulse[row]};
+  const int normal = problem.friction_row[row];
+  if (problem.box_angle_rad.empty() || normal < 0) return axis;
+  const Real angle = problem.box_angle_rad[normal];
+  if (angle == 0) return axis;
+  const bool first = row == normal + 1;
+  const int other = first ? row + 1 : row - 1;
+  const Real own = std::cos(angle), share = first ? std::sin(angle) : -std::sin(angle);
+  for (int side = 0; side < 2; ++side) {
+    axis.jacobian[side] = own * axis.jacobian[side] + share * jacobian_block(problem, other, side);
+  }
+  axis.rhs = own * axis.rhs + share * problem.rhs[other];
+  axis.impulse = own * axis.impulse + share * impulse[other];
+  return axis;
+}
+
 // d | lambda - clamp(lambda - w / d, lo, hi) | of one row, as | clamp(w, d (lambda - hi), d (lambda - lo)) |:
 // the same number without the division, whose cancellation would cost eps |lambda| d. A row that nothing can
 // move (d = 0) is measured with d = 1, which keeps the residual zero exactly at solutions.
 double find_row_residual(const StepProblem& problem, const std::vector<BodyState>& bodies, int row,
-                         Real impulse) {
-  Real slack = problem.compliance[row] * impulse - problem.rhs[row];
+                         const AxisRow& axis) {
+  Real slack = problem.compliance[row] * axis.impulse - axis.rhs;
   Real diagonal = problem.compliance[row];
   for (int side = 0; side < 2; ++side) {
     const int body = problem.row_body[2 * row + side];
     if (body < 0) continue;
-    const Vector6 block = jacobian_block(problem, row, side);
+    const Vector6& block = axis.jacobian[side];
     slack += block.dot(bodies[body].velocity);
     diagonal += block.dot(bodies[body].mass_factor.solve(block));
   }
   if (diagonal == 0) diagonal = 1;
-  const Real most = diagonal * (impulse - problem.lower[row]);
-  const Real least = diagonal * (impulse - problem.upper[row]);
+  const Real most = diagonal * (axis.impulse - problem.lower[row]);
+  const Real least = diagonal * (axis.impulse - problem.upper[row]);
   return static_cast<double>(std::abs(std::clamp(slack, least, most)));
 }
 
@@ -95,7 +122,7 @@ double find_velocity_scale(const StepProblem& problem, double largest_free_veloc
 void judge_rows(const StepProblem& problem, const std::vector<BodyState>& bodies,
                 std::span<const double> impulse, ResidualReport& report) {
   for (int r = 0; r < problem.row_count(); ++r) {
-    const double residual = find_row_residual(problem, bodies, r, impulse[r]);
+    const double residual = find_row_residual(problem, bodies, r, axis_of_row(problem, impulse, r));
     double& of_kind = problem.row_kind[r] == RowKind::bilateral ? report.residual_bilateral_m_per_s
                       : problem.row_kind[r] == RowKind::normal  ? report.residual_normal_m_per_s
                                                                 : report.residual_friction_m_per_s;
@@ -162,7 +189,7 @@ std::vector<double> row_residuals(const StepProblem& problem, std::span<const do
   if (!all_finite(impulse)) return residuals;
   const std::vector<BodyState> bodies = find_body_states(problem, impulse);
   for (int r = 0; r < problem.row_count(); ++r)
-    residuals[r] = find_row_residual(problem, bodies, r, impulse[r]);
+    residuals[r] = find_row_residual(problem, bodies, r, axis_of_row(problem, impulse, r));
   return residuals;
 }
 

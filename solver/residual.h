@@ -6,7 +6,8 @@
 //
 //     residual = max_r d_r | lambda_r - clamp(lambda_r - w_r / d_r, lo_r, hi_r) |          m/s (rad/s)
 //
-// which is zero exactly at the solution. One limit everywhere: exact means
+// which is zero exactly at the solution. On the tangent rows of a turned box (StepProblem::box_angle_rad) all
+// of this, J, b and lambda included, is taken along the axes of the box. One limit everywhere: exact means
 // residual <= kExactLimit * max(1, largest |v0| entry).
 //
 // The limit is meant for metres and seconds. In other units, or where everything creeps, it may be loose: the
@@ -39,7 +40,8 @@ struct ResidualReport {
 // impulse: (m). NaN or infinite impulses give a NaN residual and exact = false.
 ResidualReport judge(const StepProblem& problem, std::span<const double> impulse);
 
-// (m) The residual of every row; their maximum is that of judge(). All NaN for NaN or infinite impulses.
+// (m) The residual of every row, or axis of a turned box in the places of its rows; their maximum is that of
+// judge(). All NaN for NaN or infinite impulses.
 std::vector<double> row_residuals(const StepProblem& problem, std::span<const double> impulse);
 
 }  // namespace cleave

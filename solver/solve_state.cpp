@@ -13,9 +13,8 @@ void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, Solve
   summary = &solve_summary;
   const StepProblem& problem = prepared.problem();
   const std::size_t m = problem.row_count(), n6 = 6 * static_cast<std::size_t>(problem.body_count());
-  impulse.resize(m);
-  for (std::size_t r = 0; r < m; ++r)
-    impulse[r] = std::clamp(warm_impulse[r], problem.lower[r], problem.upper[r]);
+  impulse.assign(warm_impulse.begin(), warm_impulse.end());
+  prepared.set().project(impulse);
   velocity.resize(n6);
   slack.resize(m);
   state.assign(m, RowState::free);
@@ -29,8 +28,19 @@ void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, Solve
 }
 
 void SolveState::update_velocity() {
-  step->velocity(impulse, velocity);
-  step->slack(velocity, impulse, slack);
+  const std::span<const double> in_rows = step->set().in_rows(impulse, row_impulse);
+  step->velocity(in_rows, velocity);
+  step->slack(velocity, in_rows, slack);
+  step->set().to_axes(slack);
+}
+
+bool SolveState::factor() {
+  ++summary->factorizations;
+  return kernel->factor({weight, step->set().axes()}, tasks);
+}
+
+void SolveState::solve() {
+  kernel->solve(f_v, f_r, dv, dlambda, tasks);
 }
 
 void SolveState::states_from_impulses() {
@@ -51,14 +61,13 @@ bool SolveState::factor_free() {
     if (state[r] == RowState::upper) impulse[r] = problem.upper[r];
   }
   update_velocity();
-  ++summary->factorizations;
-  return kernel->factor(weight, tasks);
+  return factor();
 }
 
 void SolveState::correct_free() {
   std::fill(f_v.begin(), f_v.end(), 0.0);
   for (std::size_t r = 0; r < impulse.size(); ++r) f_r[r] = -slack[r];
-  kernel->solve(f_v, f_r, dv, dlambda, tasks);
+  solve();
   for (std::size_t r = 0; r < impulse.size(); ++r) {
     if (state[r] == RowState::free) impulse[r] += dlambda[r];
   }

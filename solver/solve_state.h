@@ -1,5 +1,10 @@
 // The iterate shared by the strategies of one solve: impulses, velocities, row slacks, the state of every
 // row, and the steps that all strategies take on a kernel. Scratch only grows.
+//
+// Impulses, slacks, weights, right-hand sides and increments of rows are those along the axes of the impulse
+// set (impulse_set.h), where bounds are bounds of single numbers. They are the bases of the blocks that
+// factor() hands the kernel, whose right-hand sides and increments are along them too. Without turned boxes
+// axes and rows are the same.
 #pragma once
 
 #include <cstdint>
@@ -32,12 +37,18 @@ struct SolveState {
   SolveState(const DirectOptions& solve_options, StageClock& clock)
       : options(solve_options), tasks(clock, solve_options.threads) {}
 
-  // Binds the state to a problem; impulses start from the clamped warm start.
+  // Binds the state to a problem; impulses start from the warm start (along the axes), moved into the set.
   void begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,
              std::span<const double> warm_impulse);
 
   // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b from the impulses.
   void update_velocity();
+
+  // The kernel's factorisation for the weights; counted. False when it finds a non-positive pivot.
+  bool factor();
+
+  // dv and dlambda from f_v and f_r by the kernel.
+  void solve();
 
   // Row states read off the impulses: at a bound exactly means bound, everything else free.
   void states_from_impulses();
@@ -77,6 +88,7 @@ struct SolveState {
   std::vector<double> weight;                    // (m) D of the present factor
   std::vector<double> f_v, f_r, dv, dlambda;     // right-hand sides and increments
   std::vector<int> violated;                     // rows found by find_violations
+  std::vector<double> row_impulse;               // (m) scratch: impulses in rows where a box is turned
   std::span<const int> part_of_body;             // (n) of the solve, for strategies that look at the cut
 };
 

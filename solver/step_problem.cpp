@@ -53,7 +53,8 @@ std::string find_shape_error(const StepProblem& p) {
       wrong(find_size_error("friction_coefficient", p.friction_coefficient, 1, m, "rows")) ||
       wrong(find_size_error("row_constraint", p.row_constraint, 1, m, "rows")) ||
       wrong(find_size_error("contact_point", p.contact_point, 3, m, "rows")) ||
-      wrong(find_size_error("warm_impulse", p.warm_impulse, 1, m, "rows"))) {
+      wrong(find_size_error("warm_impulse", p.warm_impulse, 1, m, "rows")) ||
+      (!p.box_angle_rad.empty() && wrong(find_size_error("box_angle_rad", p.box_angle_rad, 1, m, "rows")))) {
     return error;
   }
   return {};
@@ -82,7 +83,8 @@ std::string find_number_error(const StepProblem& p) {
       wrong(find_negative("compliance", p.compliance)) ||
       wrong(find_negative("friction_coefficient", p.friction_coefficient)) ||
       wrong(find_infinite("contact_point", p.contact_point)) ||
-      wrong(find_infinite("warm_impulse", p.warm_impulse))) {
+      wrong(find_infinite("warm_impulse", p.warm_impulse)) ||
+      wrong(find_infinite("box_angle_rad", p.box_angle_rad))) {
     return error;
   }
   return {};
@@ -126,9 +128,36 @@ std::string find_kind_error(const StepProblem& p, std::size_t r) {
   return {};
 }
 
+// Whether rows r + 1 and r + 2 are the friction rows of normal row r, between the same bodies.
+bool has_tangent_pair(const StepProblem& p, std::size_t r) {
+  if (r + 2 >= p.rhs.size()) return false;
+  for (std::size_t k = r + 1; k <= r + 2; ++k) {
+    if (p.row_kind[k] != RowKind::friction || p.friction_row[k] != static_cast<int>(r)) return false;
+    if (p.row_body[2 * k] != p.row_body[2 * r] || p.row_body[2 * k + 1] != p.row_body[2 * r + 1])
+      return false;
+  }
+  return true;
+}
+
+// A turned box has the bounds of its axes in the places of its rows, and a compliance that turning leaves as
+// it is.
+std::string find_turned_box_error(const StepProblem& p, std::size_t r) {
+  if (p.box_angle_rad.empty() || p.box_angle_rad[r] == 0) return {};
+  if (!has_tangent_pair(p, r)) {
+    return error_at("box_angle_rad", r, p.box_angle_rad[r],
+                    "0 but on a normal row that its two friction rows, of the same bodies, follow");
+  }
+  if (p.compliance[r + 1] != p.compliance[r + 2]) {
+    return error_at("box_angle_rad", r, p.box_angle_rad[r],
+                    "0 where the two friction rows differ in compliance, here " +
+                        number_text(p.compliance[r + 1]) + " and " + number_text(p.compliance[r + 2]));
+  }
+  return {};
+}
+
 std::string find_row_error(const StepProblem& p) {
   for (std::size_t r = 0; r < p.rhs.size(); ++r) {
-    for (const auto find : {find_body_error, find_bound_error, find_kind_error}) {
+    for (const auto find : {find_body_error, find_bound_error, find_kind_error, find_turned_box_error}) {
       if (std::string error = find(p, r); !error.empty()) return error;
     }
   }

@@ -10,6 +10,14 @@
 // with h the step, v0 = u + h M^-1 (applied and gyroscopic forces) the free velocity, lambda impulses in N s
 // (N m s), C = cfm / h and b = (erp / h) * position error (or bounce, capped push-out) as ODE defines them.
 // C > 0 makes the solution unique; with C = 0 velocities are unique and impulses may not be.
+//
+// The set of impulses need not be a box along the rows: the box of a contact's two tangent rows t1, t2 may be
+// turned by an angle in the tangent plane. Bounds and conditions of these rows then hold for
+//
+//     lambda' = (c lambda_t1 + s lambda_t2, -s lambda_t1 + c lambda_t2),   c = cos angle, s = sin angle,
+//
+// and w' made from w alike: lo <= lambda' <= hi and so on. It is the problem whose rows are J' = (c J_t1 + s
+// J_t2, -s J_t1 + c J_t2) with b' made alike, in other coordinates. Only the interior point takes it.
 #pragma once
 
 #include <cstdint>
@@ -42,6 +50,9 @@ struct StepProblem {
       row_constraint;  // (m) id of the joint or contact point; rows of one constraint are adjacent
   std::vector<double> contact_point;  // (m, 3) world position the row acts at, m
   std::vector<double> warm_impulse;   // (m) impulses carried over from the previous step, N s
+  // (m), or empty where no box is turned: on a normal row, the angle of the box of the two friction rows that
+  // follow it and have its bodies and one compliance; 0 on all other rows.
+  std::vector<double> box_angle_rad;
 
   int body_count() const { return static_cast<int>(free_velocity.size() / 6); }
   int row_count() const { return static_cast<int>(rhs.size()); }

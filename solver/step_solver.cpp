@@ -2,6 +2,8 @@
 
 #include <cassert>
 
+#include "solver/impulse_set.h"
+
 namespace cleave {
 
 const char* to_string(SolveStatus status) {
@@ -15,6 +17,10 @@ bool has_result(SolveStatus status) {
          status == SolveStatus::timeout || status == SolveStatus::diverged;
 }
 
+std::string StepSolver::refuse_set(const StepProblem& problem) {
+  return find_set_refusal("this", "solver", problem);
+}
+
 SolveSummary StepSolver::solve(const StepProblem& problem, std::span<const int> part_of_body,
                                Solution& solution) {
   SolveSummary summary;
@@ -26,6 +32,7 @@ SolveSummary StepSolver::solve(const StepProblem& problem, std::span<const int> 
     summary.message =
         "part_of_body has " + std::to_string(part_of_body.size()) + " entries, needs one per body";
   }
+  if (summary.message.empty() && !has_intervals_only(problem)) summary.message = refuse_set(problem);
   if (!summary.message.empty()) {
     summary.status = SolveStatus::refused;
     return summary;

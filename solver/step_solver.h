@@ -58,6 +58,9 @@ class StepSolver {
   virtual bool uses_partition() const = 0;
 
  private:
+  // Why this solver does not take the problem's impulse set (find_set_refusal, with the name of who refuses);
+  // empty: it does. Asked only where some set is no interval of a row.
+  virtual std::string refuse_set(const StepProblem& problem);
   virtual SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
                                 Solution& solution) = 0;
 };

@@ -130,6 +130,12 @@ std::vector<CommonParameter> collect_common() {
   return all;
 }
 
+// A scene that lies in a file is known by what the file says, not by where it lies.
+void name_content(Algorithm& scene) {
+  const std::string id = scene_content_id(scene_row(scene), scene.settings);
+  if (!id.empty()) scene.text = scene.name + "@" + id;
+}
+
 }  // namespace
 
 std::span<const AlgorithmKind> algorithm_kinds() {
@@ -171,7 +177,9 @@ void check_algorithm(const std::string& option, const std::string& text) {
 
 Algorithm read_named(const std::string& option, const std::string& text, const CommonValues& common) {
   check_algorithm(option, text);
-  return read_algorithm("--" + option, text, parameters_of(option, algorithm_name(text)), common, owners_of);
+  Algorithm algorithm = read_algorithm("--" + option, text, parameters_of(option, algorithm_name(text)), common, owners_of);
+  if (option == "scene") name_content(algorithm);
+  return algorithm;
 }
 
 std::vector<Algorithm> read_list(const std::string& option, const std::string& text,

@@ -69,6 +69,8 @@ void write_contents(const Hdf5Writer& writer, const ProblemFile& file) {
 void write_problem_file(const fs::path& path, const ProblemFile& file) {
   const std::string error = find_problem_error(file.problem);
   if (!error.empty()) throw std::invalid_argument(path.string() + ": not written: " + error);
+  if (!file.problem.box_angle_rad.empty())
+    throw std::invalid_argument(path.string() + ": not written: the format has no place for box_angle_rad");
   const fs::path temporary = path.string() + ".part";
   try {
     Hdf5Writer writer(temporary);

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "solver/impulse_set.h"
+
 namespace cleave {
 namespace {
 
@@ -134,6 +136,10 @@ class OdeSolver : public StepSolver {
   bool uses_partition() const override { return false; }
 
  private:
+  std::string refuse_set(const StepProblem& problem) override {
+    return find_set_refusal("solver", options_.quick ? "ode-quickstep" : "ode-step", problem);
+  }
+
   SolveSummary do_solve(const StepProblem& problem, std::span<const int>, Solution& solution) override {
     SolveSummary summary;
     summary.strategy = options_.quick ? "ode-quickstep" : "ode-step";

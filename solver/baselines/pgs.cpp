@@ -1,11 +1,16 @@
 // Solver `pgs`: projected Gauss-Seidel over the rows in their natural order, a fixed number of sweeps. The
 // iterative baseline: cheap, and honest about what it leaves (status not_converged unless the residual is
 // within the limit).
+#include <string_view>
+
 #include "solver/baselines/baselines.h"
 #include "solver/gauss_seidel.h"
+#include "solver/impulse_set.h"
 
 namespace cleave {
 namespace {
+
+constexpr std::string_view kName = "pgs";
 
 class Pgs : public StepSolver {
  public:
@@ -13,9 +18,13 @@ class Pgs : public StepSolver {
   bool uses_partition() const override { return false; }
 
  private:
+  std::string refuse_set(const StepProblem& problem) override {
+    return find_set_refusal("solver", kName, problem);
+  }
+
   SolveSummary do_solve(const StepProblem& problem, std::span<const int>, Solution& solution) override {
     SolveSummary summary;
-    summary.strategy = "pgs";
+    summary.strategy = kName;
     summary.kernel = "-";
     clock_.start();
     {

@@ -1,5 +1,6 @@
 // Kernel `dense`: H = M + J^T D J as one dense matrix, formed row by row and factored by Eigen. Slow and
-// obvious on purpose: it is the oracle of the other kernels and shares no code with them.
+// obvious on purpose: it is the oracle of the other kernels and shares no code with them. The blocks of D are
+// written out as 3x3 matrices here.
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
@@ -21,13 +22,17 @@ class DenseKernel : public Kernel {
     return true;
   }
 
-  bool factor(std::span<const double> d, ParallelTasks& tasks) override {
-    d_ = Eigen::Map<const Eigen::VectorXd>(d.data(), static_cast<Eigen::Index>(d.size()));
+  bool factor(const RowWeights& weights, ParallelTasks& tasks) override {
+    d_ = Eigen::Map<const Eigen::VectorXd>(weights.d.data(), static_cast<Eigen::Index>(weights.d.size()));
+    blocks_ = weights.blocks;
+    scalar_d_ = d_;
+    for (const WeightBlock& block : blocks_) scalar_d_.segment(block.first_row, block.row_count).setZero();
     {
       StageTimer timer(tasks.clock(), Stage::assemble);
       expand();
       h_ = mass_;
-      h_.noalias() += jacobian_.transpose() * d_.asDiagonal() * jacobian_;
+      h_.noalias() += jacobian_.transpose() * scalar_d_.asDiagonal() * jacobian_;
+      add_blocks();
     }
     StageTimer timer(tasks.clock(), Stage::factor_local);
     factor_.compute(h_);
@@ -40,8 +45,12 @@ class DenseKernel : public Kernel {
     const auto size = [](auto s) { return static_cast<Eigen::Index>(s.size()); };
     const Eigen::Map<const Eigen::VectorXd> fv(f_v.data(), size(f_v)), fr(f_r.data(), size(f_r));
     Eigen::Map<Eigen::VectorXd> v(dv.data(), size(dv)), lambda(dlambda.data(), size(dlambda));
-    v = factor_.solve(fv + jacobian_.transpose() * d_.cwiseProduct(fr));
-    lambda = d_.cwiseProduct(fr - jacobian_ * v);
+    Eigen::VectorXd weighted = d_.cwiseProduct(fr);
+    turn(weighted, false);
+    v = factor_.solve(fv + jacobian_.transpose() * weighted);
+    Eigen::VectorXd row_velocity = jacobian_ * v;
+    turn(row_velocity, true);
+    lambda = d_.cwiseProduct(fr - row_velocity);
   }
 
   double local_mflop() const override {
@@ -50,6 +59,32 @@ class DenseKernel : public Kernel {
   }
 
  private:
+  using Basis = Eigen::Map<const Eigen::MatrixXd>;
+  static Basis basis_of(const WeightBlock& block) {
+    return Basis(block.basis.data(), block.row_count, block.row_count);
+  }
+
+  // J^T D J of the blocks.
+  void add_blocks() {
+    for (const WeightBlock& block : blocks_) {
+      const Basis basis = basis_of(block);
+      const auto d = d_.segment(block.first_row, block.row_count).asDiagonal();
+      const Eigen::MatrixXd written_out = basis * d * basis.transpose();
+      const auto rows = jacobian_.middleRows(block.first_row, block.row_count);
+      h_.noalias() += rows.transpose() * written_out * rows;
+    }
+  }
+
+  // x <- B x, or B^T x, on the rows of the blocks.
+  void turn(Eigen::VectorXd& x, bool to_basis) const {
+    for (const WeightBlock& block : blocks_) {
+      Eigen::MatrixXd basis = basis_of(block);
+      if (to_basis) basis.transposeInPlace();
+      const Eigen::VectorXd turned = basis * x.segment(block.first_row, block.row_count);
+      x.segment(block.first_row, block.row_count) = turned;
+    }
+  }
+
   // M and J as dense matrices.
   void expand() {
     const StepProblem& problem = step_->problem();
@@ -69,7 +104,8 @@ class DenseKernel : public Kernel {
 
   const PreparedStep* step_ = nullptr;
   Eigen::MatrixXd mass_, jacobian_, h_;
-  Eigen::VectorXd d_;
+  Eigen::VectorXd d_, scalar_d_;  // scalar_d: zero on the rows of blocks
+  std::span<const WeightBlock> blocks_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
 };
 

@@ -3,8 +3,9 @@
 //     M dv - J^T dlambda       = f_v        (n, 6)
 //     J dv + D^-1 dlambda      = f_r        on rows with D > 0;  dlambda = 0 on rows with D = 0
 //
-// which is (M + J^T D J) dv = f_v + J^T D f_r with dlambda = D (f_r - J dv). Adding a kernel: one new file in
-// this folder and one row in registry.cpp.
+// which is (M + J^T D J) dv = f_v + J^T D f_r with dlambda = D (f_r - J dv). D is diagonal or, per contact, a
+// symmetric 3x3 block in a basis, on whose rows J, f_r and dlambda are those along the basis (row_weights.h).
+// Adding a kernel: one new file in this folder and one row in registry.cpp.
 #pragma once
 
 #include <memory>
@@ -13,6 +14,7 @@
 #include "harness/base/parameter.h"
 #include "solver/parallel_tasks.h"
 #include "solver/prepared_step.h"
+#include "solver/row_weights.h"
 
 namespace cleave {
 
@@ -28,11 +30,12 @@ class Kernel {
   // bodies that shares a row has its place in the analysed pattern, whose order is then kept. False: analyze.
   virtual bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) = 0;
 
-  // Numeric factorisation for D (m) >= 0. False when the matrix is not positive definite to working
-  // precision.
-  virtual bool factor(std::span<const double> d, ParallelTasks& tasks) = 0;
+  // Numeric factorisation for D, diagonal or with blocks. False when the matrix is not positive definite to
+  // working precision.
+  virtual bool factor(const RowWeights& weights, ParallelTasks& tasks) = 0;
 
   // Solves with the last factor; f_v (n, 6), f_r (m), dv (n, 6), dlambda (m).
+  // On the rows of a block f_r and dlambda are along its basis.
   virtual void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
                      std::span<double> dlambda, ParallelTasks& tasks) = 0;
 

@@ -23,11 +23,11 @@ class MonolithicKernel : public Kernel {
     return matrix_.rebind_whole(step);
   }
 
-  bool factor(std::span<const double> d, ParallelTasks& tasks) override {
-    d_ = d;
+  bool factor(const RowWeights& weights, ParallelTasks& tasks) override {
     {
       StageTimer timer(tasks.clock(), Stage::assemble);
-      matrix_.assemble(d, 0);
+      rows_.set(step_->problem(), weights);
+      matrix_.assemble(rows_, 0);
     }
     StageTimer timer(tasks.clock(), Stage::factor_local);
     return matrix_.factor(0);
@@ -36,13 +36,15 @@ class MonolithicKernel : public Kernel {
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override {
     StageTimer timer(tasks.clock(), Stage::solve);
-    const int m = step_->row_count();
-    for (int r = 0; r < m; ++r) weighted_[r] = d_[r] * f_r[r];
+    const std::span<const double> d = rows_.d();
+    for (std::size_t r = 0; r < d.size(); ++r) weighted_[r] = d[r] * f_r[r];
+    rows_.from_basis(weighted_);
     std::copy(f_v.begin(), f_v.end(), dv.begin());
     step_->add_jacobian_transpose(weighted_, dv);
     matrix_.cholesky().solve(dv);
     step_->jacobian_times(dv, dlambda);
-    for (int r = 0; r < m; ++r) dlambda[r] = d_[r] * (f_r[r] - dlambda[r]);
+    rows_.to_basis(dlambda);
+    for (std::size_t r = 0; r < d.size(); ++r) dlambda[r] = d[r] * (f_r[r] - dlambda[r]);
   }
 
   double local_mflop() const override { return matrix_.cholesky().symbolic().factor_flops(0) * 1e-6; }
@@ -55,7 +57,7 @@ class MonolithicKernel : public Kernel {
 
   const PreparedStep* step_ = nullptr;
   BlockMatrix matrix_;
-  std::span<const double> d_;
+  WeightedRows rows_;
   std::vector<double> weighted_;
 };
 

@@ -22,7 +22,7 @@ class SchurBodiesKernel : public Kernel {
  public:
   void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
   bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
-  bool factor(std::span<const double> d, ParallelTasks& tasks) override;
+  bool factor(const RowWeights& weights, ParallelTasks& tasks) override;
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override;
   int interface_unknowns() const override { return 6 * cover_bodies_; }
@@ -40,7 +40,7 @@ class SchurBodiesKernel : public Kernel {
   void bind(const PreparedStep& step, std::span<const int> part_of_body);
 
   const PreparedStep* step_ = nullptr;
-  std::span<const double> d_;
+  WeightedRows rows_;
   BlockMatrix matrix_;
   int parts_ = 0, cover_bodies_ = 0;
   std::vector<int> stage_of_body_;
@@ -92,14 +92,17 @@ bool SchurBodiesKernel::rebind(const PreparedStep& step, std::span<const int> pa
   return matrix_.rebind_whole(step);
 }
 
-bool SchurBodiesKernel::factor(std::span<const double> d, ParallelTasks& tasks) {
-  d_ = d;
-  tasks.run(Stage::assemble, parts_, [&](int part) { matrix_.assemble(d, part); });
+bool SchurBodiesKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
+  {
+    StageTimer timer(tasks.clock(), Stage::assemble);
+    rows_.set(step_->problem(), weights);
+  }
+  tasks.run(Stage::assemble, parts_, [&](int part) { matrix_.assemble(rows_, part); });
   tasks.run(Stage::factor_local, parts_, [&](int part) { factored_[part] = matrix_.factor(part); });
   if (std::ranges::find(factored_, 0) != factored_.end()) return false;
   {
     StageTimer timer(tasks.clock(), Stage::form_interface);
-    matrix_.assemble(d, parts_);
+    matrix_.assemble(rows_, parts_);
   }
   StageTimer timer(tasks.clock(), Stage::factor_interface);
   return matrix_.factor(parts_);
@@ -108,9 +111,11 @@ bool SchurBodiesKernel::factor(std::span<const double> d, ParallelTasks& tasks) 
 void SchurBodiesKernel::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
                               std::span<double> dlambda, ParallelTasks& tasks) {
   const BlockCholesky& cholesky = matrix_.cholesky();
+  const std::span<const double> d = rows_.d();
   {
     StageTimer timer(tasks.clock(), Stage::solve);
-    for (int r = 0; r < step_->row_count(); ++r) weighted_[r] = d_[r] * f_r[r];
+    for (std::size_t r = 0; r < d.size(); ++r) weighted_[r] = d[r] * f_r[r];
+    rows_.from_basis(weighted_);
     std::copy(f_v.begin(), f_v.end(), by_node_.begin());
     step_->add_jacobian_transpose(weighted_, by_node_);
     cholesky.to_positions(by_node_, x_);
@@ -134,7 +139,8 @@ void SchurBodiesKernel::solve(std::span<const double> f_v, std::span<const doubl
   StageTimer timer(tasks.clock(), Stage::solve);
   cholesky.to_nodes(x_, dv);
   step_->jacobian_times(dv, dlambda);
-  for (int r = 0; r < step_->row_count(); ++r) dlambda[r] = d_[r] * (f_r[r] - dlambda[r]);
+  rows_.to_basis(dlambda);
+  for (std::size_t r = 0; r < d.size(); ++r) dlambda[r] = d[r] * (f_r[r] - dlambda[r]);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 // Source: Peiret, Andrews, Koevecses, Kry, Teichmann, "Schur complement-based substructuring of stiff
 // multibody systems with contact", ACM TOG 2019; Liu and Andrews 2022, section 2. With H_i = L_i L_i^T each
 // part keeps Y_i = L_i^-1 J_ci^T, so that J_ci H_i^-1 J_ci^T = Y_i^T Y_i and one half of every later solve is
-// a product with Y_i.
+// a product with Y_i. On the rows of a 3x3 block of D, J is J' along its basis (row_weights.h).
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -47,7 +47,7 @@ class SchurRowsKernel : public Kernel {
  public:
   void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
   bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
-  bool factor(std::span<const double> d, ParallelTasks& tasks) override;
+  bool factor(const RowWeights& weights, ParallelTasks& tasks) override;
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override;
   int interface_unknowns() const override { return static_cast<int>(split_.cut_rows.size()); }
@@ -65,7 +65,7 @@ class SchurRowsKernel : public Kernel {
   void expand(int part, std::span<const double> f_r, std::span<double> dv, std::span<double> dlambda);
 
   const PreparedStep* step_ = nullptr;
-  std::span<const double> d_;
+  WeightedRows rows_;
   InterfaceSplit split_;
   std::vector<Part> parts_;
   std::vector<int> interface_row_;               // (cut rows) row of S, -1 where D = 0
@@ -129,7 +129,7 @@ void SchurRowsKernel::order_cut_rows(int i) {
 void SchurRowsKernel::number_active_rows() {
   active_rows_.clear();
   for (std::size_t c = 0; c < split_.cut_rows.size(); ++c) {
-    const bool active = d_[split_.cut_rows[c]] > 0;
+    const bool active = rows_.d()[split_.cut_rows[c]] > 0;
     interface_row_[c] = active ? static_cast<int>(active_rows_.size()) : -1;
     if (active) active_rows_.push_back(split_.cut_rows[c]);
   }
@@ -177,7 +177,7 @@ void SchurRowsKernel::form_complement(int i) {
     const int row = split_.cut_rows[rows.cut_rows[part.active[k]]], side = rows.cut_side[part.active[k]];
     const int body = step_->problem().row_body[2 * row + side];
     const long position = symbolic.position_of_node()[split_.local_of_body[body]];
-    const double* j = step_->problem().jacobian.data() + 12 * row + 6 * side;
+    const double* j = rows_.jacobian() + 12 * row + 6 * side;
     for (int c = 0; c < 6; ++c) part.y[k + (6 * position + c) * part.ld] = j[c];
   }
   part.matrix.cholesky().forward_many(part.y.data(), part.ld, part.first, part.last);
@@ -207,14 +207,17 @@ void SchurRowsKernel::gather_panel(int p) {
         if (column <= row) s[static_cast<long>(kPanelRows) * column] -= part.minus_gram[low + high * part.ld];
       }
     }
-    s[static_cast<long>(kPanelRows) * row] += 1 / d_[active_rows_[row]];
+    s[static_cast<long>(kPanelRows) * row] += 1 / rows_.d()[active_rows_[row]];
   }
 }
 
-bool SchurRowsKernel::factor(std::span<const double> d, ParallelTasks& tasks) {
-  d_ = d;
+bool SchurRowsKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
   const int count = split_.part_count;
-  tasks.run(Stage::assemble, count, [&](int i) { parts_[i].matrix.assemble(d, 0); });
+  {
+    StageTimer timer(tasks.clock(), Stage::assemble);
+    rows_.set(step_->problem(), weights);
+  }
+  tasks.run(Stage::assemble, count, [&](int i) { parts_[i].matrix.assemble(rows_, 0); });
   tasks.run(Stage::factor_local, count, [&](int i) { parts_[i].factored = parts_[i].matrix.factor(0); });
   for (int i = 0; i < count; ++i) {
     if (!parts_[i].factored) return false;
@@ -246,6 +249,7 @@ bool SchurRowsKernel::factor(std::span<const double> d, ParallelTasks& tasks) {
 void SchurRowsKernel::reduce(int i, std::span<const double> f_v, std::span<const double> f_r) {
   Part& part = parts_[i];
   const PartRows& rows = split_.parts[i];
+  const double *jacobian = rows_.jacobian(), *d = rows_.d().data();
   part.by_body.resize(6 * rows.bodies.size());
   for (std::size_t k = 0; k < rows.bodies.size(); ++k) {
     std::copy_n(f_v.data() + 6 * rows.bodies[k], 6, part.by_body.data() + 6 * k);
@@ -254,8 +258,8 @@ void SchurRowsKernel::reduce(int i, std::span<const double> f_v, std::span<const
     const RowGroup& group = step_->groups()[g];
     double sum[12] = {};
     for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
-      const double* j = step_->problem().jacobian.data() + 12 * r;
-      for (int c = 0; c < 12; ++c) sum[c] += j[c] * (d_[r] * f_r[r]);
+      const double* j = jacobian + 12 * r;
+      for (int c = 0; c < 12; ++c) sum[c] += j[c] * (d[r] * f_r[r]);
     }
     double* a = part.by_body.data() + 6 * split_.local_of_body[group.body_a];
     for (int c = 0; c < 6; ++c) a[c] += sum[c];
@@ -275,6 +279,7 @@ void SchurRowsKernel::expand(int i, std::span<const double> f_r, std::span<doubl
                              std::span<double> dlambda) {
   Part& part = parts_[i];
   const PartRows& rows = split_.parts[i];
+  const double *jacobian = rows_.jacobian(), *d = rows_.d().data();
   part.coupling.assign(part.ld, 0.0);
   for (std::size_t k = 0; k < part.interface_row.size(); ++k)
     part.coupling[k] = -lambda_[part.interface_row[k]];
@@ -288,11 +293,11 @@ void SchurRowsKernel::expand(int i, std::span<const double> f_r, std::span<doubl
   for (int g : rows.groups) {
     const RowGroup& group = step_->groups()[g];
     for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
-      const double* j = step_->problem().jacobian.data() + 12 * r;
+      const double* j = jacobian + 12 * r;
       double jv = 0;
       for (int c = 0; c < 6; ++c) jv += j[c] * dv[6 * group.body_a + c];
       for (int c = 0; c < 6 && group.body_b >= 0; ++c) jv += j[6 + c] * dv[6 * group.body_b + c];
-      dlambda[r] = d_[r] * (f_r[r] - jv);
+      dlambda[r] = d[r] * (f_r[r] - jv);
     }
   }
 }

@@ -22,6 +22,7 @@ class InteriorPoint : public Strategy {
  public:
   explicit InteriorPoint(const InteriorConstants& constants) : constants_(constants), iterate_(constants) {}
   bool run(SolveState& state) override;
+  bool takes_turned_boxes() const override { return true; }
 
  private:
   enum class Progress { good, finished, rounding };

@@ -80,8 +80,7 @@ class Newton : public Strategy {
     for (std::size_t r = 0; r < state.impulse.size(); ++r) {
       state.weight[r] = state.state[r] == RowState::free ? 1 / problem.compliance[r] : 0.0;
     }
-    ++state.summary->factorizations;
-    if (!state.kernel->factor(state.weight, state.tasks)) return false;
+    if (!state.factor()) return false;
     std::fill(state.f_r.begin(), state.f_r.end(), 0.0);
     for (std::size_t i = 0; i < state.velocity.size() / 6; ++i) {
       for (int row = 0; row < 6; ++row) {
@@ -94,7 +93,7 @@ class Newton : public Strategy {
       }
     }
     state.step->add_jacobian_transpose(state.impulse, state.f_v);
-    state.kernel->solve(state.f_v, state.f_r, state.dv, state.dlambda, state.tasks);
+    state.solve();
     return true;
   }
 

@@ -19,8 +19,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT / "scripts"), str(ROOT / "tests" / "scripts")]
 
 from browser import Browser  # noqa: E402
-from motion import load_motions  # noqa: E402
-from viewer import viewer_page  # noqa: E402
+from cleave_scripts.motion.recording import load_motions  # noqa: E402
+from cleave_scripts.viewer.page import viewer_page  # noqa: E402
 
 VIEWER = "document.querySelector('.cleave-viewer').cleaveViewer"
 

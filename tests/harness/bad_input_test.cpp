@@ -39,6 +39,10 @@ Arguments bad_values(const Parameter& parameter) {
       return {"-1", "nan", "inf", "heavy"};
     case Parameter::Kind::word:
       return {"no-such-choice"};
+    case Parameter::Kind::flag:
+      return {"maybe"};
+    case Parameter::Kind::path:
+      return {};  // what is wrong with a file is the scene's own matter
   }
   return {};
 }

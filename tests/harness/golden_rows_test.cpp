@@ -16,6 +16,7 @@
 #include "scenarios/scene.h"
 #include "tests/harness/machine_columns.h"
 #include "tests/harness/run_program.h"
+#include "tests/scenarios/shipped_scenes.h"
 
 namespace cleave {
 namespace {
@@ -55,9 +56,12 @@ std::vector<Case> all_cases() {
       {"large_rock_pile", {"--scene", "large_rock_pile", "--bodies", "50", "--steps", "120"}},
       {"stiff_pile", {"--scene", "rock_pile", "--bodies", "30", "--steps", "90", "--cfm", "1e-10"}},
   };
-  for (const SceneEntry& scene : scenes()) {
+  for (const ShippedScene& scene : shipped_scenes()) {
     const bool there = std::ranges::find(cases, scene.name, &Case::name) != cases.end();
-    if (!there) cases.push_back({scene.name, {"--scene", scene.name, "--steps", "30"}});
+    if (there) continue;
+    Arguments arguments = arguments_of(scene);
+    arguments.insert(arguments.end(), {"--steps", "30"});
+    cases.push_back({scene.name, arguments});
   }
   return cases;
 }

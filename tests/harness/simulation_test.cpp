@@ -15,6 +15,7 @@
 #include "partition/registry.h"
 #include "tests/harness/machine_columns.h"
 #include "tests/harness/run_program.h"
+#include "tests/scenarios/shipped_scenes.h"
 
 namespace cleave {
 namespace {
@@ -72,11 +73,12 @@ TEST(Smoke, EverySceneRunsSmallWithAllCombinations) {
       {"rock_pile", {"--bodies", "12"}},
       {"large_rock_pile", {"--bodies", "12"}},
   };
-  for (const SceneEntry& scene : scenes()) {
+  for (const ShippedScene& scene : shipped_scenes()) {
     const auto sizes = small.find(scene.name);
     const Arguments size = sizes == small.end() ? Arguments{} : sizes->second;
-    const Finished smoke = run(Arguments{"--scene", scene.name, "--max-bodies", "4", "--steps", "90",
-                                         "--measure-every", "45", "--solver", "schur,monolithic"} +
+    const Finished smoke = run(arguments_of(scene) +
+                               Arguments{"--max-bodies", "4", "--steps", "90", "--measure-every", "45",
+                                         "--solver", "schur,monolithic"} +
                                size);
     SCOPED_TRACE(scene.name);
     expect_exact(smoke, 2 * (5 * 3 + 1));

@@ -2,6 +2,7 @@
 
 #include "scenario_text.h"
 #include "scene_world.h"
+#include "shipped_scenes.h"
 
 namespace cleave {
 namespace {
@@ -36,13 +37,21 @@ TEST(SceneSettings, TextsNameOptionValueAndRange) {
 }
 
 TEST(SceneSettings, DefaultsOfEverySceneAreComplete) {
-  for (const SceneEntry& scene : scenes()) {
-    const Settings settings = make_scene_settings(scene, {});
-    EXPECT_EQ(settings.values().size(), scene.parameters.size()) << scene.name;
-    for (const Parameter& parameter : scene.parameters)
-      EXPECT_EQ(settings.text(parameter.name), checked_value(parameter, "", parameter.default_value))
+  for (const ShippedScene& scene : shipped_scenes()) {
+    const Settings settings = make_scene_settings(*scene.entry, scene.given);
+    EXPECT_EQ(settings.values().size(), scene.entry->parameters.size()) << scene.name;
+    for (const Parameter& parameter : scene.entry->parameters) {
+      const auto given = scene.given.find(parameter.name);
+      EXPECT_EQ(settings.text(parameter.name), given != scene.given.end()
+                                                   ? given->second
+                                                   : checked_value(parameter, "", parameter.default_value))
           << scene.name << " --" << parameter.name;
+    }
   }
+}
+
+TEST(SceneSettings, AParameterWithoutDefaultMustBeGiven) {
+  EXPECT_EQ(error_of(scene_named("file"), {}), "--scene: file needs path: write file@path=FILE");
 }
 
 TEST(SceneSettings, GivenValuesAreRead) {

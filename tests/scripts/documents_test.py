@@ -5,7 +5,7 @@ import unittest
 
 from synthetic import ROOT, SCRIPTS, good_row, run_script
 
-from cleave_results import EXACT_LIMIT
+from cleave_scripts.results.steps import EXACT_LIMIT
 
 # Where each package is looked for or used, and under which of these names. Any other python3-* package has to
 # be imported by a script.
@@ -21,19 +21,20 @@ USED_BY = {
     "libopenblas-dev": ("tests/CMakeLists.txt", "openblas"),
     "libcli11-dev": ("CMakeLists.txt", "CLI11"),
     "libhdf5-dev": ("CMakeLists.txt", "HDF5"),
+    "libtomlplusplus-dev": ("CMakeLists.txt", "toml++"),
     "libgtest-dev": ("tests/CMakeLists.txt", "GTest"),
     "libbenchmark-dev": ("tests/CMakeLists.txt", "benchmark"),
     "libmetis-dev": ("tests/CMakeLists.txt", "metis"),
     "python3": ("tests/CMakeLists.txt", "python3"),
     "chromium": ("tests/scripts/browser.py", "chromium"),
     "qemu-user": ("tests/CMakeLists.txt", "qemu-x86_64"),
-    "povray": ("scripts/povray_scene.py", "povray"),
-    "npm": ("scripts/viewer.py", "npm"),
+    "povray": ("scripts/cleave_scripts/motion/povray_scene.py", "povray"),
+    "npm": ("scripts/cleave_scripts/viewer/page.py", "npm"),
 }
 
 
 def packages():
-    lines = (SCRIPTS / "packages.txt").read_text().splitlines()
+    lines = (SCRIPTS / "data" / "packages.txt").read_text().splitlines()
     return dict(line.split(maxsplit=1) for line in lines if line and not line.startswith("#"))
 
 
@@ -52,7 +53,7 @@ class PackagesTest(unittest.TestCase):
 
     def test_every_package_is_named_once_with_a_reason(self):
         lines = [
-            line for line in (SCRIPTS / "packages.txt").read_text().splitlines() if not line.startswith("#")
+            line for line in (SCRIPTS / "data" / "packages.txt").read_text().splitlines() if not line.startswith("#")
         ]
         self.assertEqual(len(lines), len(packages()))
         self.assertTrue(all(len(reason.split()) > 1 for reason in packages().values()))
@@ -82,14 +83,13 @@ class PackagesTest(unittest.TestCase):
         """Modules that python scripts import and that are neither python's own nor ours."""
         import sys
         files = [
-            file for folder in (SCRIPTS, SCRIPTS / "figures", SCRIPTS / "documents", ROOT / "tests" / "scripts")
-            for file in folder.iterdir() if file.is_file() and
-            (file.suffix == ".py" or not file.suffix and file.read_text().startswith("#!/usr/bin/python3"))
+            *(SCRIPTS / "cleave_scripts").rglob("*.py"), *(ROOT / "tests" / "scripts").glob("*.py"),
+            *(file for file in SCRIPTS.iterdir() if file.is_file() and file.read_text().startswith("#!/usr/bin/python3"))
         ]
         names = set()
         for file in files:
             names |= set(re.findall(r"^\s*(?:import|from) (\w+)", file.read_text(), re.M))
-        return names - set(sys.stdlib_module_names) - {file.stem for file in files} - {"figures", "documents"}
+        return names - set(sys.stdlib_module_names) - {file.stem for file in files} - {"cleave_scripts"}
 
 
 class ColumnsTest(unittest.TestCase):

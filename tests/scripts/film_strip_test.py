@@ -6,9 +6,9 @@ import unittest
 import motion_data
 import numpy
 
-import film_strip
-from motion import load_motion
-from motion_shapes import rotation_matrix, world_pose
+from cleave_scripts.motion import film_strip
+from cleave_scripts.motion.recording import load_motion
+from cleave_scripts.motion.shapes import rotation_matrix, world_pose
 
 EVERY = 5
 WIDTH = 400

@@ -13,8 +13,9 @@ import unittest.mock
 
 from synthetic import ROOT, SCRIPTS, run_script
 
-import ladder_rungs
-from ladder_cells import COLUMNS
+from cleave_scripts.ladder import rungs
+from cleave_scripts.ladder.climbers import CLIMBERS, solver_options
+from cleave_scripts.ladder.cells import COLUMNS
 
 # Fails as STAND_IN says of a solver: "pgs=crash ode-step=sleep".
 STAND_IN = f"""#!/usr/bin/python3
@@ -95,7 +96,7 @@ class LadderTest(unittest.TestCase):
     def test_every_solver_advances_a_world_of_its_own(self):
         self.ladder()
         rows, calls = self.rows(), self.calls()
-        self.assertEqual(len(rows), 2 * len(ladder_rungs.SOLVERS))
+        self.assertEqual(len(rows), 2 * len(CLIMBERS))
         self.assertEqual(tuple(rows[0]), COLUMNS)
         self.assertEqual({(row["status"], row["physics"], row["first_failing"], row["setup"])
                           for row in rows}, {("ok", "ok", "-", "-")})
@@ -202,8 +203,20 @@ class LadderTest(unittest.TestCase):
         process.send_signal(signal.SIGTERM)
         self.assertEqual(process.wait(timeout=10), 130)
 
+    def test_a_solver_that_says_its_strategy_or_parameters_climbs_too_and_after_those_of_the_list(self):
+        self.ladder("--solver", "relax@sweeps=30,newton:dense,monolithic,exact")
+        self.assertEqual(list(dict.fromkeys(row["solver"] for row in self.rows())),
+                         ["exact", "monolithic", "relax@sweeps=30", "newton:dense"])
+        self.assertEqual({" ".join(call.split()[-6:-2]) for call in self.calls()},
+                         {f"--solver {name} --advance {name}" for name in
+                          ("exact", "monolithic", "relax@sweeps=30", "newton:dense")})
+
+    def test_climbers_of_the_list_have_their_options(self):
+        self.assertEqual(solver_options("pgs_200"), ("--solver", "pgs", "--advance", "pgs", "--sweeps", "200"))
+        self.assertEqual(solver_options("exact"), ("--solver", "exact", "--advance", "exact"))
+
     def test_bad_input_is_one_line_and_leaves_nothing(self):
-        for arguments in (("--rung", "heavy"), ("--solver", "pgs"), ("--steps", "0"), ("--timeout", "nan"),
+        for arguments in (("--rung", "heavy"), ("--solver", "pgs"), ("--solver", "exact,pgs"), ("--steps", "0"), ("--timeout", "nan"),
                           ("--jobs", "x")):
             result = self.ladder(*arguments, code=1)
             self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
@@ -215,7 +228,7 @@ class LadderTest(unittest.TestCase):
 class ClosedFormTest(unittest.TestCase):
 
     def expected(self, name, value, steps=10**6, **changes):
-        rung = next(rung for rung in ladder_rungs.RUNGS if rung.name == name)
+        rung = next(rung for rung in rungs.RUNGS if rung.name == name)
         return rung.expect({**rung.settings(value), **changes}, steps)
 
     def test_the_heavy_box_sags_by_the_sum_over_the_interfaces(self):
@@ -230,8 +243,8 @@ class ClosedFormTest(unittest.TestCase):
         depth = 0
         for steps in range(1, 30):
             depth += 1e-5 * 50 * 0.01 / 4 - 0.2 * depth
-            self.assertAlmostEqual(ladder_rungs.depth_m(50, 4, settings, steps), depth, delta=1e-18)
-        self.assertAlmostEqual(ladder_rungs.depth_m(50, 4, {**settings, "erp": "0"}, 7), 7 * 1.25e-6)
+            self.assertAlmostEqual(rungs.depth_m(50, 4, settings, steps), depth, delta=1e-18)
+        self.assertAlmostEqual(rungs.depth_m(50, 4, {**settings, "erp": "0"}, 7), 7 * 1.25e-6)
 
     def test_a_soft_stack_off_its_axis_has_no_height_for_it_leans(self):
         soft, stiff = (self.expected("stiffness_off_axis", cfm) for cfm in ("1e-2", "1e-3"))
@@ -257,30 +270,30 @@ class ClosedFormTest(unittest.TestCase):
         amplitude = 0.01
         bent = tension * (2 * amplitude)**2 / (2 * length) * links
         moving = mass * amplitude**2 / 3 / 2 * links
-        rung = next(rung for rung in ladder_rungs.RUNGS if rung.name == "chain_swing_short_step")
+        rung = next(rung for rung in rungs.RUNGS if rung.name == "chain_swing_short_step")
         step_s = float(rung.settings("100")["dt"])
         self.assertAlmostEqual(step_s * math.sqrt(bent / moving), 1)
         self.assertAlmostEqual(self.expected("chain_swing", "100").longest_step_s, 2 * step_s)
-        self.assertEqual(float(rung.settings("1")["dt"]), ladder_rungs.longest_step_s(rung.settings("1")) / 2)
+        self.assertEqual(float(rung.settings("1")["dt"]), rungs.longest_step_s(rung.settings("1")) / 2)
         self.assertEqual(rung.settings("1")["links"], "10")
 
     def test_a_short_step_is_never_longer_than_the_usual_one(self):
         self.assertEqual(
-            ladder_rungs.half_the_longest_step({
+            rungs.half_the_longest_step({
                 "links": "1",
                 "mass-ratio": "0.01",
                 "dt": "0.01"
             }), {"dt": "0.01"})
 
     def test_every_stack_has_both_set_ups_which_differ_in_nothing_else(self):
-        rungs = {rung.name: rung for rung in ladder_rungs.RUNGS}
-        self.assertEqual(len(rungs), len(ladder_rungs.RUNGS))
-        stacks = [rung for rung in rungs.values() if rung.setup == "on_axis"]
+        by_name = {rung.name: rung for rung in rungs.RUNGS}
+        self.assertEqual(len(by_name), len(rungs.RUNGS))
+        stacks = [rung for rung in by_name.values() if rung.setup == "on_axis"]
         self.assertEqual(len(stacks), 8)
         for rung in stacks:
-            twin = rungs[rung.name + "_off_axis"]
+            twin = by_name[rung.name + "_off_axis"]
             self.assertEqual(twin.setup, "off_axis")
-            self.assertEqual({**rung.settings("1"), **ladder_rungs.OFF_AXIS}, twin.settings("1"))
+            self.assertEqual({**rung.settings("1"), **rungs.OFF_AXIS}, twin.settings("1"))
             self.assertEqual((rung.values, rung.quick, rung.scene, rung.expect),
                              (twin.values, twin.quick, twin.scene, twin.expect))
 
@@ -290,7 +303,7 @@ class ClosedFormTest(unittest.TestCase):
         self.assertAlmostEqual(aim.height_m, 1.15 - aim.sag_m)
 
     def test_quick_values_are_some_of_the_full_ones_in_their_order(self):
-        for rung in ladder_rungs.RUNGS:
+        for rung in rungs.RUNGS:
             self.assertEqual([value for value in rung.values if value in rung.quick], list(rung.quick),
                              rung.name)
             self.assertEqual(len(set(rung.values)), len(rung.values), rung.name)

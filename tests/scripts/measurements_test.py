@@ -9,14 +9,15 @@ import unittest.mock
 from stand_in import StandInCase
 from synthetic import ROOT
 
-import dense_ratios
-from documents import cuts, speed
-from documents.stored import Stored
+from cleave_scripts.documents import cuts, speed
+from cleave_scripts.documents.stored import Stored
+from cleave_scripts.measurements import dense_ratios
+from cleave_scripts.results.paper import COMBINATIONS
 
 STAND_IN = f"""#!/usr/bin/python3
-import os, pathlib, sys
+import itertools, os, pathlib, sys
 sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
-from synthetic import COMBINATIONS, write_steps
+from synthetic import asked_partitioners, asked_refiners, write_steps
 words = sys.argv[1:]
 with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write(" ".join(words) + "\\n")
@@ -34,12 +35,13 @@ if words[0] == "record":
 files = [word for word in words if word.endswith(".h5")]
 assert files and all(os.path.exists(file) for file in files), files
 threads = int(words[words.index("--threads") + 1]) if "--threads" in words else 1
-names = COMBINATIONS if "all" in words else [("mix", "fm")]
+given = dict(zip(words, words[1:]))
+names = itertools.product(asked_partitioners(given.get("--partitioner", "-")), asked_refiners(given.get("--refiner", "-")))
 write_steps(out, [dict(step=int(file[-9:-3]), scene="s", bodies=7, partitioner=partitioner, refiner=refiner,
                        threads=threads, rows=1200, interface_rows=50 if "whole" in words else 40,
                        status=os.environ.get("STAND_IN_STATUS", "ok"), t_s_ms=8 / threads, t_s_waiting_ms=0.25,
                        factorizations=9 if "--cold" in words else 2)
-                  for file in files for partitioner, refiner in names])
+                  for partitioner, refiner in names for file in files])
 """
 
 
@@ -57,7 +59,7 @@ class Measurement(StandInCase):
         """Cells that were not solved are one line, and nothing is written."""
         with unittest.mock.patch.dict(os.environ, STAND_IN_STATUS="not_converged"):
             said = self.run_it(code=1).stderr.splitlines()
-        self.assertRegex(said[-1], r"replayed cells are not ok, first: step \d+, mix fm: status not_converged")
+        self.assertRegex(said[-1], r"replayed cells are not ok, first: step \d+, \S+ \S+: status not_converged")
         self.assertEqual(len(said), 2, said)  # the other says how long it takes
         self.assertEqual(list((self.directory / "out").iterdir()), [])
 
@@ -75,7 +77,7 @@ class TwoThreadsTest(Measurement):
         record, *replays = self.calls()
         self.assertIn("--scene large_rock_pile --at 100,200,300,400", record)
         self.assertEqual([call[call.index("--threads"):].split()[1] for call in replays], ["1", "2", "2", "1", "1", "2"])
-        self.assertEqual(len(self.rows("two_threads.csv")), 4 * 2 * 3)
+        self.assertEqual(len(self.rows("two_threads.csv")), 4 * 2 * 3 * 4)  # steps, threads, rounds, combinations
         self.assertEqual({row["t_s_waiting_ms"] for row in self.rows("two_threads.csv")}, {"0.25"})
         self.assertIn("mix+fm step 300: 2.00", result.stdout)
         self.assertIn("| `mix+fm` | 2.00 | 2.00 | 2.00 | 2.00 |", speed.two_threads(self.stored()))
@@ -162,7 +164,7 @@ class AblationTest(Measurement):
         result = self.run_it()
         calls = self.calls()
         self.assertEqual(len(calls), 4 * (1 + len(cuts.CHOICES)))
-        self.assertEqual(len(self.rows("ablation.csv")), 4 * len(cuts.CHOICES) * 15)
+        self.assertEqual(len(self.rows("ablation.csv")), 4 * len(cuts.CHOICES) * len(COMBINATIONS))
         self.assertIn("| mix+fm | 40 | 50 |  |  |  |", result.stdout)
         self.assertIn("| degree whole | `mix+none` | +25 % | +25 % | +25 % | +25 % |", cuts.ablation_facts(self.stored()))
 

@@ -5,8 +5,8 @@ import h5py
 import numpy
 
 import synthetic  # noqa: F401  (makes scripts/ importable)
-from cleave_results import PARTITIONERS, REFINERS
-from motion import GEOM_TYPES, NO_PART
+from cleave_scripts.motion.recording import GEOM_TYPES, NO_PART
+from cleave_scripts.results.paper import PARTITIONERS, REFINERS
 
 STEPS, EVERY, BODIES = 30, 3, 6
 # What each body is made of: (kind, size). Body 5 is a clump of two spheres.

@@ -7,10 +7,10 @@ import h5py
 import motion_data
 import numpy
 
-from cleave_results import ResultError
-from motion import find_recordings, load_motion
-from motion_shapes import (conjugate, hull_triangles, multiply, plane_polygons, relative_pose,
-                           rotation_matrix, world_pose)
+from cleave_scripts.motion.recording import find_recordings, load_motion
+from cleave_scripts.motion.shapes import (conjugate, hull_triangles, multiply, plane_polygons, relative_pose,
+                                          rotation_matrix, world_pose)
+from cleave_scripts.results.errors import ResultError
 
 
 def random_turns(count, seed=1):

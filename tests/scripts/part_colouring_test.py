@@ -4,9 +4,9 @@ import unittest
 import numpy
 
 import synthetic  # noqa: F401  (makes scripts/ importable)
-from colour_vision import VISIONS, cielab, contrast, linear
-from motion_colours import EDGE, EDGE_CASING, PART_COLOURS
-from part_colouring import CONTRAST, colour_bodies, colour_sequence
+from cleave_scripts.motion.colour_vision import VISIONS, cielab, contrast, linear
+from cleave_scripts.motion.colours import EDGE, EDGE_CASING, PART_COLOURS
+from cleave_scripts.motion.part_colouring import CONTRAST, colour_bodies, colour_sequence
 
 LEAST_BETWEEN_PARTS = 24
 LEAST_FROM_LINES = 35  # of a part from a line or its casing, whichever is seen better

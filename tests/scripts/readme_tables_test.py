@@ -7,11 +7,12 @@ import unittest
 import stored_data
 from synthetic import ROOT, SCRIPTS, run_script
 
-import extremes_steps
-from cleave_results import ResultError
-from documents import cuts, markers, paper_claims, paper_table, sets, speed, stability, text
-from documents.stored import NoResults, Stored
-from reference_stages import STAGES
+from cleave_scripts.documents import cuts, markers, paper_claims, paper_table, sets, speed, stability
+from cleave_scripts.documents.stored import NoResults, Stored
+from cleave_scripts.measurements import extremes_steps
+from cleave_scripts.measurements.reference_stages import STAGES
+from cleave_scripts.results.errors import ResultError
+from cleave_scripts.table import text
 
 DOCUMENTS = ("README.md", "partition/README.md", "solver/README.md", "results/README.md", "results/table1.md")
 MEASURED = re.compile(r"\d ?(?:ms|µs|us|%|Gflop/s)\b|\d %")

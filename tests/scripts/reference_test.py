@@ -8,7 +8,7 @@ import unittest
 
 from synthetic import ROOT, run_script
 
-from reference_stages import STAGES
+from cleave_scripts.measurements.reference_stages import STAGES
 
 PROGRAM = f"""#!/usr/bin/python3
 import sys

@@ -1,7 +1,9 @@
 """scripts/render_figures: pictures that show what they should, marked gaps, clear errors."""
+import argparse
 import pathlib
 import tempfile
 import unittest
+import unittest.mock
 
 import matplotlib.image
 import motion_data
@@ -9,12 +11,14 @@ import numpy
 from browser import blank_reason
 from synthetic import run_script
 
-from cleave_results import ResultError
-from motion import load_motion
-from motion_colours import EDGE, NODE, PART_COLOURS
-from motion_pictures import Stage, picture_of_bodies, picture_of_parts, picture_with_graph
-from picture_sheets import cells_of, colours_of_cells
-from povray_scene import CONSTANT_LIGHT, Camera, graph, render
+from cleave_scripts.motion import figure2
+from cleave_scripts.motion.colours import EDGE, NODE, PART_COLOURS
+from cleave_scripts.motion.picture_sheets import best_cell, cells_of, colours_of_cells, names_of
+from cleave_scripts.motion.pictures import Stage, picture_of_bodies, picture_of_parts, picture_with_graph
+from cleave_scripts.motion.povray_scene import CONSTANT_LIGHT, Camera, graph, render
+from cleave_scripts.motion.recording import load_motion
+from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.paper import COMBINATIONS
 
 SIZE = (160, 130)
 LAST = motion_data.STEPS - 1
@@ -118,12 +122,26 @@ class PictureTest(Scratch):
     def test_parts_of_figure_2_have_one_colour_in_all_cells(self):
         motion = self.motion()
         parts = numpy.arange(motion_data.BODIES) // 2
-        for position in range(15):
+        for position in range(len(COMBINATIONS)):
             motion.measured["part"][9, position] = numpy.random.default_rng(position).permutation(9)[parts]
         colours = colours_of_cells(motion, 9, cells_of(motion))
-        self.assertEqual(len(colours), 15)
+        self.assertEqual(len(colours), len(COMBINATIONS))
         for colour in colours.values():
             numpy.testing.assert_array_equal(colour, colours["mindp", "none"])
+
+    def test_figure_2_shows_what_was_recorded_whoever_it_is(self):
+        labels = ["stripes@width=5+none+schur", "mr@tau-mr=1e+06+swap+schur", "mix+none+schur", "-+-+relax@sweeps=30"]
+        motion_data.write_motion(self.directory, labels=labels)
+        motion = load_motion(self.directory / "motion.h5")
+        self.assertEqual(motion.combinations[1], ("mr@tau-mr=1e+06", "swap", "schur"))
+        self.assertEqual(names_of(cells_of(motion)), (["mix", "stripes@width=5", "mr@tau-mr=1e+06"], ["none", "swap"]))
+        self.assertEqual(best_cell(cells_of(motion)), 0)  # the paper's is not there
+        with unittest.mock.patch.object(figure2, "_pictures", return_value={}):
+            figure = figure2.draw([motion], argparse.Namespace(width=100))
+        self.addCleanup(figure2.pyplot.close, figure)
+        where = matplotlib.rcParams["axes.titlelocation"]
+        self.assertEqual([axes.get_title(where) for axes in figure.axes[:3]], ["mix", "stripes@width=5", "mr@tau-mr=1e+06"])
+        self.assertEqual(len(figure.axes), 6)
 
     def test_what_povray_does_not_understand_is_an_error(self):
         with self.assertRaisesRegex(ResultError, "povray failed: .*rror"):
@@ -151,7 +169,7 @@ class CommandTest(Scratch):
         for name in ("figure1", "figure2", "film_strip"):
             self.assertIsNone(blank_reason(matplotlib.image.imread(figures / f"{name}.png")[..., :3]), name)
         self.assertEqual(result.stderr.count("film strip:"), 9)  # three scenes by steps 0, 10, 20
-        self.assertEqual(result.stderr.count("figure 2:"), 15)
+        self.assertEqual(result.stderr.count("figure 2:"), len(COMBINATIONS))
 
     def test_what_was_not_recorded_is_a_gap(self):
         motion_data.write_motion(self.directory, labels=["mix+fm+schur", "bfs+none+schur"])

@@ -4,7 +4,7 @@ import pathlib
 
 from synthetic import good_row, write_manifest, write_steps
 
-from cleave_results import PARTITIONERS, REFINERS, SCENES, load_paper_table1
+from cleave_scripts.results.paper import PARTITIONERS, REFINERS, SCENES, load_paper_table1
 
 PAPER = load_paper_table1()
 STEPS = range(9, 90, 10)

@@ -5,14 +5,15 @@ import tempfile
 import unittest
 
 import numpy
+import pandas
 from matplotlib.colors import to_rgb
 from report_data import report_row, rows_of, whole_system, write_run, write_tree
 
-from cleave_results import SCENES
-from colour_vision import contrast
-from figures import choose, data, interface_cost, style
-from figures.registry import FIGURES
-from figures.runs import runs_body
+from cleave_scripts.figures import choose, data, interface_cost, looks, style
+from cleave_scripts.figures.registry import FIGURES
+from cleave_scripts.figures.runs import runs_body
+from cleave_scripts.motion.colour_vision import contrast
+from cleave_scripts.results.paper import PARTITIONERS, SCENES
 
 def difference(first, second):
     """The least of the differences that usual and red-green blind eyes see; 2.3 is just noticeable."""
@@ -44,24 +45,34 @@ class FigureCase(unittest.TestCase):
 
 class ColourTest(unittest.TestCase):
 
-    def test_red_green_blind_eyes_tell_the_names_of_each_kind_apart(self):
-        for kind, colors in (("partitioner", style.COLORS), ("stage", style.STAGES),
-                             ("solver", {name: look[0] for name, look in style.SOLVERS.items()})):
+    def setUp(self):
+        looks.meet([])
+        self.addCleanup(looks.meet, [])
+
+    def test_red_green_blind_eyes_tell_the_colours_of_each_kind_apart(self):
+        cycle = {color: color for color in (*looks.CYCLE, looks.WHOLE_SYSTEM)}
+        self.assertGreaterEqual(len(cycle), 13)
+        for colors, limit in ((cycle, 20), (looks.STAGES, 10)):
             least, *names = closest(colors)
-            # Solvers and partitioners differ in their marks too.
-            self.assertGreater(least, 10, f"{kind}: {names}")
+            self.assertGreater(least, limit, names)
 
     def test_the_measure_finds_what_they_confuse(self):
         self.assertLess(difference("#882255", "#7A3A60"), 20)
         self.assertLess(difference("#CC6677", "#44AA99"), 20)  # far apart for others
         self.assertGreater(difference("#000000", "#FFFFFF"), 99)
 
-    def test_every_solver_has_its_own_colour_and_marker_also_those_that_come_later(self):
-        style.give_looks(["quantum", "pgs", "abacus"])
-        looks = [style.solver_look(name) for name in (*style.SOLVERS, "quantum", "abacus")]
-        for part in ("color", "marker"):
-            self.assertEqual(len({look[part] for look in looks}), len(looks), part)
-        self.assertEqual(style.solver_look("pgs")["marker"], style.SOLVERS["pgs"][1])
+    def test_the_papers_partitioners_have_the_first_colours_whoever_else_is_there(self):
+        frame = pandas.DataFrame({"partitioner": ["later", *PARTITIONERS[::-1]], "refiner": "none", "solver": "schur"})
+        looks.meet([frame])
+        self.assertEqual([looks.color(name) for name in (*PARTITIONERS, "later")], list(looks.CYCLE[:len(PARTITIONERS) + 1]))
+        self.assertEqual(looks.partitioners_in(["-", "later", PARTITIONERS[0]]), [PARTITIONERS[0], "later", "-"])
+
+    def test_a_solver_has_one_look_whatever_its_parameters_and_more_names_than_colours_have_marks(self):
+        names = [f"solver_{number}" for number in range(20)]
+        looks.meet([pandas.DataFrame({"partitioner": "-", "refiner": "-", "solver": names})])
+        marks = [looks.solver_look(name) for name in names]
+        self.assertEqual(len({(mark["color"], mark["marker"]) for mark in marks}), len(names))
+        self.assertEqual(looks.solver_look("solver_3@sweeps=30"), marks[3])
 
 
 class TradeOffTest(unittest.TestCase):
@@ -107,7 +118,8 @@ class TradeOffTest(unittest.TestCase):
 
     def test_a_solver_has_one_colour_and_marker_in_all_panels_and_the_legend(self):
         self.assertEqual(len(self.scatters), 2)
-        known = {(look[0], look[1]) for look in style.SOLVERS.values()}
+        solvers = {name for block in self.loaded.blocks for name in block.rows["solver"]}
+        known = {(look["color"], look["marker"]) for look in map(looks.solver_look, solvers)}
         used = [{(line.get_color(), line.get_marker()) for line in ax.lines if line.get_marker() != "None"}
                 for ax in self.figure.axes]
         for marks in used:
@@ -142,7 +154,7 @@ class TradeOffTest(unittest.TestCase):
             self.assertEqual(set(cluster.split("\n")), {"exact", "monolithic", "schur"})
 
     def test_points_of_one_solver_are_joined_from_few_to_many_sweeps(self):
-        color = style.solver_look("pgs")["color"]
+        color = looks.solver_look("pgs")["color"]
         joined, = (line for line in self.scatters[0].lines
                    if line.get_color() == color and len(line.get_xdata()) == len(SWEEPS))
         self.assertEqual(list(joined.get_xdata()), sorted(joined.get_xdata()))

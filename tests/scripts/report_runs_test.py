@@ -6,9 +6,9 @@ import unittest
 
 from synthetic import ROOT, SCRIPTS, run_script
 
-from cleave_results import SCENES
-from figures import data, style
-from figures.registry import FIGURES
+from cleave_scripts.figures import data, style
+from cleave_scripts.figures.registry import FIGURES
+from cleave_scripts.results.paper import ASKED_REFINERS, SCENES
 
 STAND_IN = f"""#!/usr/bin/python3
 import os, sys
@@ -16,14 +16,13 @@ sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
 import stand_in_key
 stand_in_key.answer()
 from report_data import manifest, rows_of, whole_system
-from synthetic import write_manifest, write_steps
+from synthetic import asked_partitioners, asked_refiners, write_manifest, write_steps
 arguments = [argument for argument in sys.argv[2:] if argument not in ("--record-motion", "--force")]
 given = dict(zip((name[2:] for name in arguments[::2]), arguments[1::2]))
 with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write(" ".join(sys.argv[1:]) + "\\n")
 if os.environ.get("STAND_IN_STOP") == os.path.basename(given["out"]):
     sys.exit(130)
-names = lambda option, every: every if given[option] == "all" else given[option].split(",")
 rows = []
 for solver in given["solver"].split(","):
     changes = dict(solver=solver, threads=int(given["threads"]), bodies=int(given.get("bodies", 200)),
@@ -31,8 +30,8 @@ for solver in given["solver"].split(","):
     if "kernel" in given:
         changes |= dict(solver="pivot:" + given["kernel"], kernel=given["kernel"])
     if solver.startswith("schur"):
-        rows += rows_of(given["scene"], names("partitioner", ("mindp", "maxdp", "bfs", "mr", "mix")),
-                        names("refiner", ("none", "kl", "fm")), (9, 19), **changes)
+        rows += rows_of(given["scene"], asked_partitioners(given["partitioner"]),
+                        asked_refiners(given["refiner"]), (9, 19), **changes)
     else:
         rows += rows_of(given["scene"], ("-",), ("-",), (9, 19), **changes)
 write_steps(given["out"], rows)
@@ -76,7 +75,7 @@ class ReportRunsTest(unittest.TestCase):
         self.assertEqual(len(motion), 3)
         self.assertTrue(all("--measure-every 2 --repeats 1 " in call for call in motion))
         every, = [call for call in calls if "--measure-every 1 " in call]
-        self.assertIn("--scene log_tower --partitioner mindp --refiner all", every)
+        self.assertIn(f"--scene log_tower --partitioner mindp --refiner {ASKED_REFINERS}", every)
         environment = dict(os.environ, CLEAVE_PROGRAM=str(self.program), STAND_IN_LOG=str(self.log))
         # scripts/reproduce ends with a check that made-up rows need not pass.
         run_script("reproduce", "--out", self.directory / "out", "--steps", 100, env=environment)

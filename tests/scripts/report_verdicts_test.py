@@ -8,8 +8,8 @@ import numpy
 import pandas
 from report_data import PAPER, rows_of, write_run
 
-from cleave_results import SCENES
-from figures import data, interface_cost, ladder_map, spread, style, times_by_size, verdicts
+from cleave_scripts.figures import data, interface_cost, ladder_map, spread, style, times_by_size, verdicts
+from cleave_scripts.results.paper import SCENES
 
 
 def judged(directory):

@@ -5,6 +5,8 @@ import unittest
 from stand_in import StandInCase
 from synthetic import ROOT
 
+from cleave_scripts.results.paper import ASKED_PARTITIONERS, ASKED_REFINERS
+
 STAND_IN = f"""#!/usr/bin/python3
 import os, pathlib, sys
 sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
@@ -35,7 +37,8 @@ class ReproduceTest(StandInCase):
         result = self.run_it()
         calls = self.calls()
         self.assertEqual(
-            calls[1], "run --scene log_tower --partitioner all --refiner all --solver schur --steps 500 "
+            calls[1], f"run --scene log_tower --partitioner {ASKED_PARTITIONERS} --refiner {ASKED_REFINERS} "
+            "--solver schur --steps 500 "
             f"--measure-every 50 --repeats 3 --threads 2 --seed 1 --out {self.directory}/out/log_tower "
             "--force")
         self.assertEqual([call.split()[2] for call in calls],

@@ -4,7 +4,8 @@ import unittest
 from stand_in import StandInCase
 from synthetic import ROOT
 
-from figures import data, times_by_size
+from cleave_scripts.figures import data, times_by_size
+from cleave_scripts.results.paper import ASKED_REFINERS
 
 STAND_IN = f"""#!/usr/bin/python3
 import os, sys
@@ -40,7 +41,7 @@ class ScalingTest(StandInCase):
         calls = self.calls()
         self.assertEqual(
             calls[1],
-            "run --scene rock_pile --bodies 100 --partitioner mindp,mix --refiner all --solver schur "
+            f"run --scene rock_pile --bodies 100 --partitioner mindp,mix --refiner {ASKED_REFINERS} --solver schur "
             "--steps 20 --measure-every 2 --repeats 3 --threads 2 --seed 1 "
             f"--out {self.directory}/out/scaling/bodies_100 --force")
         self.assertEqual(len(calls), 3)

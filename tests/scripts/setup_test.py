@@ -61,7 +61,7 @@ class SetupTest(StandInTest):
         self.stand_in("cmake")
         self.packages = [
             line.split()[0]
-            for line in (SCRIPTS / "packages.txt").read_text().splitlines()
+            for line in (SCRIPTS / "data" / "packages.txt").read_text().splitlines()
             if not line.startswith("#")
         ]
         self.install(self.packages)

@@ -16,8 +16,7 @@ def _words(argv):
 
 def key(argv):
     changes = json.loads(os.environ.get("STAND_IN_KEY", "{}"))
-    names = changes.pop("names", "mindp mix")  # what `all` stands for
-    text = " ".join(_words(argv[1:])).replace("all", names)
+    text = " ".join(_words(argv[1:]))
     threads = int(argv[argv.index("--threads") + 1]) if "--threads" in argv else 1
     return {
         "run_id": hashlib.sha256(text.encode()).hexdigest()[:16],

@@ -4,7 +4,7 @@ import json
 
 from synthetic import COMBINATIONS, matrix, write_steps
 
-from cleave_results import SCENES
+from cleave_scripts.results.paper import SCENES
 
 BUILD = {"git_hash": "0123456789abcdef", "git_dirty": "false"}
 MACHINE = {"cpu_model": "Some CPU", "cores": 2}

@@ -9,15 +9,25 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 
-from cleave_results import PARTITIONERS, REFINERS, SCENES  # noqa: E402
+from cleave_scripts.results.paper import (ASKED_PARTITIONERS, ASKED_REFINERS, COMBINATIONS,  # noqa: E402
+                                          PARTITIONERS, REFINERS, SCENES)
 
-COMBINATIONS = [(partitioner, refiner) for partitioner in PARTITIONERS for refiner in REFINERS]
 STEPS = range(0, 500, 50)
+
+
+def asked_partitioners(text):
+    """The names that a stand-in for the program runs where it is asked for these."""
+    return PARTITIONERS if text == ASKED_PARTITIONERS else text.split(",")
+
+
+def asked_refiners(text):
+    return REFINERS if text == ASKED_REFINERS else text.split(",")
 
 
 def good_row(scene, step, partitioner, refiner):
     """A row that breaks no criterion; t_s depends on the combination, so that means can be told apart."""
-    rank = COMBINATIONS.index((partitioner, refiner))
+    names = (partitioner, refiner)
+    rank = COMBINATIONS.index(names) if names in COMBINATIONS else len(COMBINATIONS)
     return {
         "scene": scene,
         "seed": 1,
@@ -55,8 +65,8 @@ def good_row(scene, step, partitioner, refiner):
     }
 
 
-def matrix(scene, steps=STEPS):
-    return [good_row(scene, step, *names) for step in steps for names in COMBINATIONS]
+def matrix(scene, steps=STEPS, combinations=COMBINATIONS):
+    return [good_row(scene, step, *names) for step in steps for names in combinations]
 
 
 def write_steps(directory, rows):

@@ -7,7 +7,7 @@ import motion_data
 import numpy
 from browser import Browser, blank_reason
 
-import viewer
+from cleave_scripts.viewer import page as viewer
 
 WIDTH, HEIGHT = 900, 1000
 CANVAS = ".cleave-canvas"

@@ -1,4 +1,4 @@
-"""What scripts/viewer.py puts into the page: every number within its stated rounding, thinned to a size."""
+"""What the viewer puts into the page: every number within its stated rounding, thinned to a size."""
 import base64
 import gzip
 import json
@@ -10,12 +10,12 @@ from unittest import mock
 
 import motion_data
 import numpy
-from synthetic import SCRIPTS, run_script
+from synthetic import run_script
 
-import viewer
-from cleave_results import ResultError
-from motion import NO_PART, load_motion
-from motion_colours import EDGE_CASING, PART_COLOURS
+from cleave_scripts.motion.colours import EDGE_CASING, PART_COLOURS
+from cleave_scripts.motion.recording import NO_PART, load_motion
+from cleave_scripts.results.errors import ResultError
+from cleave_scripts.viewer import page as viewer
 
 TYPES = {"u8": "u1", "u16": "<u2", "i16": "<i2", "i32": "<i4", "f32": "<f4"}
 
@@ -96,7 +96,7 @@ class PackTest(MotionTest):
 
         for index in range(len(part)):
             numpy.testing.assert_array_equal(colour[index, 0], colour[0, 0])
-            for combination in range(15):
+            for combination in range(len(motion.combinations)):
                 numpy.testing.assert_array_equal(cut(colour[index, combination]),
                                                  cut(part[index, combination]))
         island = arrays["islandColour"].reshape(motion.measured.island.shape)
@@ -192,8 +192,8 @@ class SectionTest(MotionTest):
                 viewer.build_script()
 
     def test_versions_are_fixed(self):
-        package = json.loads((SCRIPTS / "viewer" / "package.json").read_text())
-        lock = json.loads((SCRIPTS / "viewer" / "package-lock.json").read_text())
+        package = json.loads((viewer.SOURCES / "package.json").read_text())
+        lock = json.loads((viewer.SOURCES / "package-lock.json").read_text())
         for name, version in {**package["dependencies"], **package["devDependencies"]}.items():
             self.assertRegex(version, r"^\d+\.\d+\.\d+$")
             self.assertEqual(lock["packages"][f"node_modules/{name}"]["version"], version)

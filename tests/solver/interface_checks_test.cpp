@@ -97,7 +97,9 @@ class SpoiltKernel : public Kernel {
   bool rebind(const PreparedStep& step, std::span<const int> parts, ParallelTasks& tasks) override {
     return kernel_->rebind(step, parts, tasks);
   }
-  bool factor(std::span<const double> d, ParallelTasks& tasks) override { return kernel_->factor(d, tasks); }
+  bool factor(const RowWeights& weights, ParallelTasks& tasks) override {
+    return kernel_->factor(weights, tasks);
+  }
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override {
     kernel_->solve(f_v, f_r, dv, dlambda, tasks);

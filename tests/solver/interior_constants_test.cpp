@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 
+#include "solver/registry.h"
 #include "solver/direct_solver.h"
 #include "solver/strategies/interior_constants_list.h"
 #include "tests/solver/problem_makers.h"

@@ -21,6 +21,14 @@ TEST(FindProblemErrorTest, AcceptsWhatTheMakersMake) {
   EXPECT_EQ(find_problem_error(make_chain(1, {})), "");
 }
 
+TEST(FindProblemErrorTest, AcceptsTurnedBoxesOfContacts) {
+  StepProblem problem = make_pile(1, {});
+  problem.box_angle_rad.assign(problem.row_count(), 0.0);
+  EXPECT_EQ(find_problem_error(problem), "");
+  for (int r = 0; r < problem.row_count(); r += 3) problem.box_angle_rad[r] = -1 - 0.1 * r;
+  EXPECT_EQ(find_problem_error(problem), "");
+}
+
 TEST(FindProblemErrorTest, AcceptsBodiesWithoutRowsAndNothingAtAll) {
   StepProblem problem;
   problem.h_s = kTestStep_s;
@@ -46,6 +54,16 @@ struct Damage {
   std::function<void(StepProblem&)> apply;
   const char* expected;  // start of the message
 };
+
+void turn_first_box(StepProblem& problem, double angle) {
+  problem.box_angle_rad.assign(problem.row_count(), 0.0);
+  problem.box_angle_rad[0] = angle;
+}
+
+void make_normal(StepProblem& problem, int row) {
+  problem.row_kind[row] = RowKind::normal;
+  problem.friction_row[row] = -1;
+}
 
 const Damage kDamages[] = {
     {"StepZero", [](StepProblem& p) { p.h_s = 0; }, "h_s = 0, allowed"},
@@ -101,6 +119,26 @@ const Damage kDamages[] = {
     {"FrictionBeyondRows", [](StepProblem& p) { p.friction_row[1] = p.row_count(); }, "friction_row[1] = "},
     {"NormalWithFrictionRow", [](StepProblem& p) { p.friction_row[3] = 0; },
      "friction_row[3] = 0, allowed: -1"},
+    {"ShapeBoxAngle", [](StepProblem& p) { p.box_angle_rad = {0.1}; },
+     "size of box_angle_rad = 1, allowed: "},
+    {"NanBoxAngle", [](StepProblem& p) { turn_first_box(p, kNan); },
+     "box_angle_rad[0] = nan, allowed: finite"},
+    {"BoxAngleOnFriction", [](StepProblem& p) { turn_first_box(p, 0), p.box_angle_rad[1] = 0.5; },
+     "box_angle_rad[1] = 0.5, allowed: 0 but on a normal row that its two"},
+    {"BoxAngleWithoutTangents", [](StepProblem& p) { turn_first_box(p, 0.5), make_normal(p, 2); },
+     "box_angle_rad[0] = 0.5, allowed: 0 but on a normal row"},
+    {"BoxAngleOfOtherFriction",
+     [](StepProblem& p) { turn_first_box(p, 0.5), p.friction_row[1] = p.friction_row[2] = 3; },
+     "box_angle_rad[0] = 0.5, allowed: 0 but on a normal row"},
+    {"BoxAngleOfOtherBodies", [](StepProblem& p) { turn_first_box(p, 0.5), p.row_body[5] = 1; },
+     "box_angle_rad[0] = 0.5, allowed: 0 but on a normal row"},
+    {"BoxAngleAtTheEnd",
+     [](StepProblem& p) {
+       turn_first_box(p, 0), make_normal(p, p.row_count() - 1), p.box_angle_rad.back() = 1;
+     },
+     "box_angle_rad["},
+    {"BoxAngleOfTwoCompliances", [](StepProblem& p) { turn_first_box(p, 0.5), p.compliance[2] *= 2; },
+     "box_angle_rad[0] = 0.5, allowed: 0 where the two friction rows differ in compliance, here "},
     {"MassAsymmetric", [](StepProblem& p) { p.mass[36 + 6] = 1e-6; }, "mass[42] = 1e-06, allowed: symmetric"},
     {"MassZero", [](StepProblem& p) { p.mass[36 + 7] = 0; },
      "mass[43] = 0, allowed: symmetric positive definite"},

@@ -1,0 +1,1 @@
+"""Here what the READMEs measure is written into them, from the files under results/."""

@@ -1,0 +1,56 @@
+"""What is stored: a line each set of results, with what made it."""
+from cleave_scripts.results.manifest import load_manifest
+from cleave_scripts.table import text
+
+# What, below results/: what it holds.
+SETS = {
+    "full": "the matrix: the paper's scenes and combinations; Table 1",
+    "report": "what the report draws besides: rock piles of growing size, every step of Log Tower, one thread, other "
+              "kernels and solvers",
+    "report/verdicts.csv": "the paper's claims, judged",
+    "ladder/ladder.csv": "the stability ladder, quick values, every solver",
+    "ladder/ladder_full_exact.csv": "all its values by `exact`",
+    "extremes.csv": "factorisations of the interior point at extreme stiffness and mass ratios, a row a step",
+    "cold_starts.csv": "factorisations of `exact` from zero impulses and from those of the step before",
+    "solver_benchmark.json": "exact solves against Gauss-Seidel, own factorisation against CHOLMOD",
+    "dense_benchmark.json": "the dense Cholesky factorisation against the processor's peak and OpenBLAS",
+    "busy_machine.csv": "a step on two threads while other programs keep the cores busy",
+    "partition_benchmark.json": "every partitioner and refiner and METIS on synthetic piles",
+    "two_threads.csv": "recorded steps with one and with two threads, in turn",
+    "ablation.csv": "interface rows under the open choices of the method",
+    "figures": "the pictures of the README",
+}
+COMMANDS = {
+    "full": "scripts/reproduce --measure-every 10",
+    "report": "scripts/report_runs --measure-every 25",
+    "report/verdicts.csv": "scripts/report",
+    "ladder/ladder.csv": "scripts/ladder",
+    "ladder/ladder_full_exact.csv": "scripts/ladder --full --solver exact",
+    "extremes.csv": "scripts/extremes --seeds 1",
+    "cold_starts.csv": "scripts/cold_starts",
+    "solver_benchmark.json": "scripts/benchmark_solvers",
+    "dense_benchmark.json": "scripts/benchmark_dense",
+    "busy_machine.csv": "scripts/busy_machine",
+    "partition_benchmark.json": "scripts/benchmark_partitioners",
+    "two_threads.csv": "scripts/two_threads",
+    "ablation.csv": "scripts/ablation",
+    "figures": "scripts/readme_figures",
+}
+
+
+def _minutes(stored, name):
+    manifests = [load_manifest(path.parent) for path in sorted((stored.root / name).rglob("manifest.json"))]
+    seconds = sum(manifest["result"]["wall_s"] for manifest in manifests) or stored.provenance().get(name, {}).get(
+        "seconds")
+    return "-" if not seconds else f"{seconds / 60:.1f} min"
+
+
+def reference_sets(stored):
+    there = [name for name in SETS if stored.has(name, COMMANDS[name])]
+    lines = [[f"`{name}`", SETS[name], f"`{COMMANDS[name]}`", _minutes(stored, name), stored.origin(name)] for name in there]
+    missing = [f"`{name}` (`{COMMANDS[name]}`)" for name in SETS if name not in there]
+    lines = text.table(["set", "what", "made by", "took", "on"], lines)
+    return lines + (f"\n\nNot stored yet: {text.listed(missing)}." if missing else "")
+
+
+BLOCKS = {"reference_sets": reference_sets}

@@ -1,0 +1,105 @@
+"""Threads, solvers against each other, and cold starts."""
+import math
+import statistics
+
+from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements import dense_ratios, model_ratios, solver_ratios, thread_times
+from cleave_scripts.results.paper import BEST, SCENES
+from cleave_scripts.table import text
+
+THREADS = ("two_threads.csv", "scripts/two_threads")
+COLD = ("cold_starts.csv", "scripts/cold_starts")
+BENCHMARK = ("solver_benchmark.json", "scripts/benchmark_solvers")
+DENSE = ("dense_benchmark.json", "scripts/benchmark_dense")
+BUSY = ("busy_machine.csv", "scripts/busy_machine")
+SOLVERS = ("report/solvers/rocks_200", "scripts/report_runs --measure-every 25")
+ONE_THREAD = ("report/one_thread", "scripts/report_runs --measure-every 25")
+TWO_THREADS = ("full", "scripts/reproduce --measure-every 10")
+COLD_ROWS = 1000
+
+
+def two_threads(stored):
+    rows = need(stored.table(*THREADS), "two threads")
+    ratios = thread_times.speed_ups(rows)
+    steps = sorted({step for _, step in ratios})
+    lines = [[f"`{name}`", *(f"{ratios[name, step]:.2f}" for step in steps)]
+             for name in dict.fromkeys(name for name, _ in ratios)]
+    rounds = len({row["round"] for row in rows})
+    return (f"t_s of one thread over that of two on recorded steps of Large Rock Pile, medians of {rounds} replays "
+            f"with each, in turn (`{THREADS[1]}`; {stored.origin(THREADS[0])}):\n\n" +
+            text.table(["", *(f"step {step}" for step in steps)], lines))
+
+
+def model(stored):
+    """The modelled two-thread time against the measured one."""
+    one, two = (model_ratios.solved_rows(stored.rows(*data), threads, data[0])
+                for data, threads in ((ONE_THREAD, 1), (TWO_THREADS, 2)))
+    found = model_ratios.compare(one, two)
+    ratios = model_ratios.ratios(need(found.pairs, "the model"), ("scene",))
+    lines = [[scene.replace("_", " ").title(), len(ratios[scene,]),
+              *map(text.number, model_ratios.quartiles(ratios[scene,]))] for scene in SCENES if (scene,) in ratios]
+    return (f"Modelled over measured t_s on two threads, rows of `{ONE_THREAD[0]}` against those of `{TWO_THREADS[0]}` "
+            f"({stored.origin(ONE_THREAD[0])}); {found.waited} pairs that waited for a core are "
+            "left out:\n\n" +
+            text.table(["scene", "pairs", "lower quartile", "median", "upper quartile"], lines) +
+            "\n\nThe model has no look-ahead in the dense interface, two threads do.")
+
+
+def solver_benchmark(stored):
+    return (f"{stored.origin(BENCHMARK[0])}:\n\n" + solver_ratios.markdown(stored.benchmark(*BENCHMARK)))
+
+
+def dense(stored):
+    return f"{stored.origin(DENSE[0])}:\n\n" + dense_ratios.markdown(stored.benchmark(*DENSE))
+
+
+def busy_machine(stored):
+    times = thread_times.by_load(need(stored.table(*BUSY), "busy loops"))
+    busy = ", ".join(f"{text.number(time / times[0])} times as long beside {loops} busy "
+                     f"{'loop' if loops == 1 else 'loops'}" for loops, time in times.items() if loops)
+    return (f"A step of Large Rock Pile with `{'+'.join(BEST)}` takes {text.number(times[0])} ms on two threads of an idle machine, and "
+            f"{busy} of other login sessions (`{BUSY[1]}`; {stored.origin(BUSY[0])}).")
+
+
+def cold_starts(stored):
+    rows = [row for row in need(stored.table(*COLD), "cold starts") if int(row["rows"]) >= COLD_ROWS]
+    need(rows, f"at least {COLD_ROWS} rows")
+    parts = []
+    for start in ("cold", "warm"):
+        counts = sorted(int(row[f"factorizations_{start}"]) for row in rows)
+        parts.append(f"{start}: median {statistics.median(counts):.0f}, at most {counts[-1]}, and at most 8 on "
+                     f"{sum(count <= 8 for count in counts)}")
+    return (f"Factorisations of `exact` on the {len(rows)} recorded steps of Rock Pile with at least {COLD_ROWS} rows, "
+            f"cfm 1e-5 (`{COLD[1]}`): {'; '.join(parts)}.")
+
+
+def _cost(rows):
+    """Mean time of a solve in ms and the median residual, of rows that have both."""
+    rows = [row for row in rows if math.isfinite(row.number("t_s_ms") + row.number("residual_m_per_s"))]
+    return (statistics.fmean(row.number("t_s_ms") for row in rows),
+            statistics.median(row.number("residual_m_per_s") for row in rows))
+
+
+def speed_accuracy(stored):
+    """The fastest direct solver against numbers of Gauss-Seidel sweeps: time and error."""
+    direct, sweeps = [], {}
+    for run in stored.runs(*SOLVERS):
+        name = run.steps_path.parent.name
+        if name.startswith("pgs_"):
+            sweeps[int(name.removeprefix("pgs_"))] = _cost(run.rows)
+        elif name == "direct":
+            for solver in dict.fromkeys(row["solver"] for row in run.rows):
+                rows = [row for row in run.rows if row["solver"] == solver]
+                if all(row["status"] == "ok" for row in rows):
+                    direct.append((_cost(rows)[0], solver))
+    time, solver = min(need(direct, "a direct solver"))
+    shown = [[count, text.number(cost), text.number(cost / time), text.number(error)]
+             for count, (cost, error) in sorted(need(sweeps, "Gauss-Seidel").items())]
+    return (f"On 200 rocks, one thread, `{solver}` solves a step exactly in {text.number(time)} ms on the mean, the fastest "
+            f"of the direct solvers; projected Gauss-Seidel ({stored.origin(SOLVERS[0])}):\n\n" +
+            text.table(["sweeps", "ms", f"of the time of `{solver}`", "median residual, m/s"], shown))
+
+
+BLOCKS = {"two_threads": two_threads, "solver_benchmark": solver_benchmark, "cold_starts": cold_starts,
+          "speed_accuracy": speed_accuracy, "dense": dense, "busy_machine": busy_machine,
+          "model": model}

@@ -1,0 +1,135 @@
+"""Which blocks belong together: those of the paper's experiment, the longest run, and what a caption says of them."""
+import itertools
+
+import pandas
+
+from cleave_scripts.figures.tree import NoData, need
+from cleave_scripts.results.command_line import counted
+from cleave_scripts.results.manifest import machine
+from cleave_scripts.results.names import in_order
+from cleave_scripts.results.paper import REFINERS, SCENES
+
+
+def title(scene):
+    return scene.replace("_", " ").title()
+
+
+def combinations(rows):
+    return set(zip(rows["partitioner"], rows["refiner"]))
+
+
+def main_blocks(blocks, solver):
+    """By scene, the blocks behind Figures 3 and 5, Table 1 and the verdicts: repeated runs of one setup.
+
+    Scaling runs are no candidates. Taken is the setup with the solver as it is by default, most combinations,
+    most solves of a cell, most rows, most threads, and then the first by name; of its runs those with all
+    these combinations, in the same order. Returns what was left out as lines too.
+    """
+    candidates = {}
+    for block in blocks:
+        part = None if block.is_scaling else block.of_solver(solver)
+        if part is not None:
+            key = (part.setup, part.threads, part.label)
+            candidates.setdefault(part.scene, {}).setdefault(key, []).append(part)
+    chosen, notes = {}, []
+    for scene in in_order(candidates, SCENES):
+        every = sorted(itertools.chain(*candidates[scene].values()), key=preference)
+        first = every[0]
+        same = candidates[scene][first.setup, first.threads, first.label]
+        chosen[scene] = [
+            part for part in every if part in same and combinations(first.rows) <= combinations(part.rows)
+        ]
+        others = sorted({part.experiment.name for part in every if part not in chosen[scene]})
+        if others:
+            notes.append(f"{title(scene)} of the paper's figures is {first.experiment.name}; "
+                         f"of another setup or with fewer combinations: {', '.join(others)}")
+    return chosen, notes
+
+
+def preference(part):
+    """Sorts blocks of one scene: first the one whose times say most."""
+    return (not part.is_default, -len(combinations(part.rows)), -repeats(part),
+            -len(part.rows), -(part.threads or 0), part.experiment.name)
+
+
+def repeats(part):
+    """How often each cell was solved; where that is unknown, once."""
+    known = part.rows["repeat_count"].dropna() if "repeat_count" in part.rows else ()
+    return known.min() if len(known) else 1
+
+
+def most_steps(blocks, scene, solver, partitioner):
+    """The blocks, repeated runs of one setup, that measured most steps of one partitioner with every refiner.
+
+    Where no run is longer, the one of the paper's experiment, since `preference` decides then.
+    """
+    parts = [
+        part for block in blocks
+        if block.scene == scene and not block.is_scaling and (part := block.of_solver(solver)) is not None
+    ]
+    wanted = {(partitioner, refiner) for refiner in REFINERS}
+    full = [part for part in parts if wanted <= combinations(part.rows)]
+    parts = full or [part for part in parts if partitioner in set(part.rows["partitioner"])]
+    if not parts:
+        raise NoData(f"no rows of {partitioner} in scene {scene}")
+    parts.sort(key=lambda part: (not part.is_default, -step_count(part.rows), preference(part)))
+    first = parts[0]
+    return [
+        part for part in parts
+        if (part.setup, part.threads,
+            part.label) == (first.setup, first.threads,
+                            first.label) and step_count(part.rows) == step_count(first.rows)
+    ]
+
+
+def first_runs(group):
+    """All rows of a group, each step of a seed once: where a run was repeated, its first."""
+    rows = pandas.concat([part.rows for part in group], ignore_index=True)
+    keys = [
+        column for column in ("seed", "step", "partitioner", "refiner", "label") if column in rows.columns
+    ]
+    return rows.drop_duplicates(keys)
+
+
+def scenes_with(main, *columns):
+    """({scene: rows with status ok that have the columns}, 'No data: ...' about the other scenes or '').
+
+    NoData where no scene has such rows.
+    """
+    rows, gaps = {}, []
+    for scene, group in main.items():
+        frame = first_runs(group)
+        try:
+            rows[scene] = need(frame[frame["status"] == "ok"], *columns)
+        except NoData as gap:
+            gaps.append(f"{title(scene)}, {gap}")
+    if not rows:
+        raise NoData("; ".join(gaps) or "no rows of the chosen solver in any scene")
+    return rows, f"No data: {'; '.join(gaps)}. " if gaps else ""
+
+
+def step_count(rows):
+    return len(rows[["seed", "step"] if "seed" in rows else ["step"]].drop_duplicates())
+
+
+def provenance(groups):
+    """One sentence of a caption for {name: blocks}: measured steps, repeats and machines."""
+    steps = ", ".join(f"{name} {step_count(first_runs(group))}" for name, group in groups.items())
+    parts = [part for group in groups.values() for part in group]
+    repeats = sorted({
+        int(value) for part in parts if "repeat_count" in part.rows
+        for value in part.rows["repeat_count"].dropna().unique()
+    })
+    text = f"Measured steps: {steps}."
+    if repeats:
+        often = "once" if repeats == [1] else f"{' or '.join(map(str, repeats))} times, the median counts"
+        text += f" Each cell solved {often}."
+    failed = sum((first_runs(group)["status"] != "ok").sum() for group in groups.values())
+    if failed:
+        text += f" {counted(failed, 'row')} with another status than ok."
+    return text + " " + machines(parts)
+
+
+def machines(parts):
+    names = dict.fromkeys(machine(part.experiment.manifest) for part in parts)
+    return f"{'Machine' if len(names) == 1 else 'Machines'}: {'; '.join(names)}."

@@ -1,0 +1,28 @@
+"""The figures of the report, in its order. A new figure is one file and one row here."""
+import dataclasses
+
+from cleave_scripts.figures import (interface_cost, kernel_value, ladder_map, speed_up, stages, times_by_combination,
+                                    times_by_size, times_by_step, trade_off)
+
+
+@dataclasses.dataclass(frozen=True)
+class Figure:
+    name: str  # of the files
+    title: str
+    draw: object  # data -> (matplotlib figure, caption); raises NoData
+    paper: bool = False  # one of the paper's
+
+
+FIGURES = (
+    Figure("figure3", "Figure 3: solve time of every example and combination", times_by_combination.draw,
+           True),
+    Figure("figure4", "Figure 4: solve time against the number of rocks", times_by_size.draw, True),
+    Figure("figure5", "Figure 5: solve time of every step of Log Tower", times_by_step.draw, True),
+    Figure("trade_off", "What accuracy costs: time against error", trade_off.draw),
+    Figure("ladder", "The stability ladder: where each solver fails first", ladder_map.draw),
+    Figure("stages", "Where the solve spends its time", stages.draw_combinations),
+    Figure("stages_solvers", "Where other solvers spend theirs", stages.draw_solvers),
+    Figure("interface_cost", "The price of interface rows", interface_cost.draw),
+    Figure("speed_up", "Speed-up with more workers, modelled and measured", speed_up.draw),
+    Figure("kernel_value", "What a better kernel does to the value of partitioning", kernel_value.draw),
+)

@@ -1,0 +1,1 @@
+"""Here measurements become ratios, and what scripts/reference made becomes the stored set."""

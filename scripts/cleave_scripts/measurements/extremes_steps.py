@@ -1,0 +1,65 @@
+"""What scripts/extremes measured, a row a step, and the table of it."""
+import csv
+import re
+
+from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.steps import find_steps_files, load_steps
+
+NAME = re.compile(r"ratio_(?P<mass_ratio>[^_]+)_(?P<scene>.+)_cfm_(?P<cfm>[^_]+)_seed_(?P<seed>\d+)")
+COLUMNS = ("status", "factorizations")
+WRITTEN = ("mass_ratio", "scene", "cfm", "seed", *COLUMNS)
+
+
+def read(paths):
+    """One dictionary a step."""
+    steps = []
+    for path in find_steps_files(paths):
+        match = NAME.fullmatch(path.parent.name)
+        if match is None:
+            raise ResultError(f"{path}: not a run of scripts/extremes")
+        steps += [match.groupdict() | {name: row[name] for name in COLUMNS} for row in load_steps(path, COLUMNS)[0]]
+    return steps
+
+
+def write(path, steps):
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, WRITTEN, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(steps)
+
+
+def cells(steps):
+    """{(ratio, scene): {cfm: steps}}"""
+    table = {}
+    for step in steps:
+        table.setdefault((step["mass_ratio"], step["scene"]), {}).setdefault(step["cfm"], []).append(step)
+    return table
+
+
+def most_allowed(ratio, cfm):
+    """Factorisations of a step; None where no number is set."""
+    if float(cfm) == 0:
+        return None
+    return 40 if float(ratio) <= 1e3 else 70
+
+
+def holds(step):
+    allowed = most_allowed(step["mass_ratio"], step["cfm"])
+    return step["status"] == "ok" and (allowed is None or int(step["factorizations"]) <= allowed)
+
+
+def _describe(steps):
+    counts = [int(step["factorizations"]) for step in steps]
+    failed = sum(step["status"] != "ok" for step in steps)
+    text = f"{sum(counts) / len(counts):.0f} / {max(counts)}"
+    return text + (f", {failed} not solved" if failed else "")
+
+
+def markdown(table):
+    cfms = sorted({cfm for found in table.values() for cfm in found}, key=float, reverse=True)
+    lines = ["| mass ratio | scene | steps | " + " | ".join(f"cfm {cfm}" for cfm in cfms) + " |",
+             "|---" * (3 + len(cfms)) + "|"]
+    for (ratio, scene), found in sorted(table.items(), key=lambda item: (float(item[0][0]), item[0][1])):
+        texts = [_describe(found[cfm]) if cfm in found else "-" for cfm in cfms]
+        lines.append(f"| {ratio} | {scene} | {sum(map(len, found.values()))} | " + " | ".join(texts) + " |")
+    return "\n".join(lines)

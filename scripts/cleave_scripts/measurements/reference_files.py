@@ -1,0 +1,50 @@
+"""Moves what the stages of scripts/reference made into results/, with a note of what made each file."""
+import json
+import shutil
+
+from cleave_scripts.measurements.reference_stages import RUN_FILES, STAGES
+from cleave_scripts.results.errors import ResultError
+
+
+def _sources(stage, directory):
+    """(file, where to below results/)"""
+    for name, target in stage.runs:
+        for path in sorted(path for file in RUN_FILES for path in (directory / name).rglob(file)):
+            yield path, f"{target}/{path.relative_to(directory / name)}"
+    for pattern, target in stage.files:
+        for path in sorted(directory.glob(pattern)):
+            yield path, (target + path.name if target.endswith("/") else target)
+
+
+def _copy(source, target, root):
+    """Paths in JSON are written relative to the checkout."""
+    target.parent.mkdir(parents=True, exist_ok=True)
+    if source.suffix == ".json":
+        target.write_text(source.read_text(encoding="utf-8").replace(f"{root}/", ""), encoding="utf-8")
+    else:
+        shutil.copyfile(source, target)
+
+
+def publish(root, records):
+    """results/ holds then what the stages made, and of older results nothing."""
+    out, results = root / "out" / "reference", root / "results"
+    found = {stage: list(_sources(stage, out / stage.place)) for stage in STAGES}
+    for stage, files in found.items():
+        if (stage.runs or stage.files) and not files:
+            raise ResultError(f"stage {stage.name} left nothing in {out / stage.place}")
+    for path in sorted(results.rglob("*"), reverse=True):
+        if path.is_dir():
+            if not any(path.iterdir()):
+                path.rmdir()
+        elif path.suffix != ".md":
+            path.unlink()
+    notes = {}
+    for stage, files in found.items():
+        for source, target in files:
+            _copy(source, results / target, root)
+        notes |= {target: records[stage.name] for source, target in files if source.name not in RUN_FILES}
+        for _, target in stage.files:
+            if target.endswith("/"):
+                notes[target.rstrip("/")] = records[stage.name]
+    (results / "provenance.json").write_text(
+        json.dumps({"schema": "cleave-provenance-1", "files": notes}, indent=2) + "\n", encoding="utf-8")

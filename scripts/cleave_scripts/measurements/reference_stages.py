@@ -1,0 +1,47 @@
+"""The stages of scripts/reference: what each runs, how long that takes, and which of its files are kept in results/."""
+import dataclasses
+
+from cleave_scripts.results.paper import SCENES
+
+REPORT = "report"  # one directory for all that scripts/report draws
+REPORT_RUNS = ("scaling", "one_thread", "schur_bodies", "solvers", "every_step")
+RUN_FILES = ("manifest.json", "steps.csv")
+
+
+@dataclasses.dataclass(frozen=True)
+class Stage:
+    name: str
+    command: tuple  # a script and its options; {out} is where the stage writes, {report} what the report is drawn from
+    minutes: float
+    directory: str = ""  # below the reference directory; the name where it is empty
+    runs: tuple = ()  # (directory of runs, where to below results/)
+    files: tuple = ()  # (file or pattern, where to below results/; a directory ends in /)
+
+    @property
+    def place(self):
+        return self.directory or self.name
+
+
+STAGES = (
+    Stage("matrix", ("reproduce", "--measure-every", "10", "--out", "{out}"), 20, REPORT,
+          runs=tuple((scene, f"full/{scene}") for scene in SCENES)),
+    Stage("report_runs", ("report_runs", "--measure-every", "25", "--out", "{out}"), 7, REPORT,
+          runs=tuple((name, f"report/{name}") for name in REPORT_RUNS)),
+    Stage("ladder", ("ladder", "--out", "{out}"), 4, REPORT, files=(("ladder.csv", "ladder/ladder.csv"),)),
+    Stage("ladder_full", ("ladder", "--full", "--solver", "exact", "--out", "{out}"), 2,
+          files=(("ladder.csv", "ladder/ladder_full_exact.csv"),)),
+    Stage("solver_benchmark", ("benchmark_solvers", "--out", "{out}"), 2,
+          files=(("solver_benchmark.json", "solver_benchmark.json"),)),
+    Stage("dense_benchmark", ("benchmark_dense", "--out", "{out}"), 3,
+          files=(("dense_benchmark.json", "dense_benchmark.json"),)),
+    Stage("busy_machine", ("busy_machine", "--out", "{out}"), 1, files=(("busy_machine.csv", "busy_machine.csv"),)),
+    Stage("partition_benchmark", ("benchmark_partitioners", "--out", "{out}"), 3,
+          files=(("partition_benchmark.json", "partition_benchmark.json"),)),
+    Stage("two_threads", ("two_threads", "--out", "{out}"), 2, files=(("two_threads.csv", "two_threads.csv"),)),
+    Stage("cold_starts", ("cold_starts", "--out", "{out}"), 1, files=(("cold_starts.csv", "cold_starts.csv"),)),
+    Stage("ablation", ("ablation", "--out", "{out}"), 3, files=(("ablation.csv", "ablation.csv"),)),
+    Stage("extremes", ("extremes", "--seeds", "1", "--out", "{out}"), 12, files=(("extremes.csv", "extremes.csv"),)),
+    Stage("pictures", ("render_figures", "{report}"), 10, REPORT),
+    Stage("report", ("report", "{report}"), 2, REPORT, files=(("**/verdicts.csv", "report/verdicts.csv"),)),
+    Stage("figures", ("readme_figures", "{report}", "--out", "{out}"), 2, files=(("*.png", "figures/"),)),
+)

@@ -1,0 +1,1 @@
+"""Here recorded motion becomes pictures: bodies in their shapes, parts in colours, rendered by POV-Ray."""

@@ -1,0 +1,1 @@
+"""Here rows become mean times beside the paper's, and numbers become text: Table 1 in every format."""

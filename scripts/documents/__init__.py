@@ -1,1 +1,0 @@
-"""The generated parts of the READMEs: each a function from the files under results/ to Markdown."""

@@ -1,1 +1,0 @@
-"""What `scripts/report` draws: every figure, the verdicts and the page, from files alone."""

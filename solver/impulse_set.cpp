@@ -1,0 +1,60 @@
+#include "solver/impulse_set.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+namespace cleave {
+
+void ImpulseSet::bind(const StepProblem& problem) {
+  problem_ = &problem;
+  axes_.clear();
+  for (std::size_t r = 0; r < problem.box_angle_rad.size(); ++r) {
+    const double angle = problem.box_angle_rad[r];
+    if (angle == 0) continue;
+    const double c = std::cos(angle), s = std::sin(angle);
+    axes_.push_back({static_cast<int>(r), 3, {1, 0, 0, 0, c, s, 0, -s, c}});
+  }
+}
+
+std::span<const double> ImpulseSet::in_rows(std::span<const double> x, std::vector<double>& scratch) const {
+  if (axes_.empty()) return x;
+  scratch.assign(x.begin(), x.end());
+  to_rows(scratch);
+  return scratch;
+}
+
+void ImpulseSet::project(std::span<double> impulse) const {
+  for (std::size_t r = 0; r < impulse.size(); ++r) {
+    impulse[r] = std::clamp(impulse[r], problem_->lower[r], problem_->upper[r]);
+  }
+}
+
+double ImpulseSet::residual(std::span<const double> d, std::span<const double> impulse,
+                            std::span<const double> w) const {
+  double worst = 0;
+  for (std::size_t r = 0; r < impulse.size(); ++r) {
+    const double target = std::clamp(impulse[r] - w[r] / d[r], problem_->lower[r], problem_->upper[r]);
+    const double miss = d[r] * std::abs(impulse[r] - target);
+    if (!(miss <= worst)) worst = miss;  // a NaN must not pass unseen
+    if (std::isnan(worst)) return worst;
+  }
+  return worst;
+}
+
+bool has_intervals_only(const StepProblem& problem) {
+  return std::ranges::all_of(problem.box_angle_rad, [](double angle) { return angle == 0; });
+}
+
+std::string find_set_refusal(std::string_view kind, std::string_view name, const StepProblem& problem) {
+  const auto turned = std::ranges::find_if(problem.box_angle_rad, [](double angle) { return angle != 0; });
+  if (turned == problem.box_angle_rad.end()) return {};
+  std::ostringstream text;
+  text << kind << " " << name
+       << " takes an interval for every row, not a box turned in its tangent plane: box_angle_rad["
+       << turned - problem.box_angle_rad.begin() << "] = " << *turned
+       << ", allowed: 0 (strategy interior-point takes others)";
+  return text.str();
+}
+
+}  // namespace cleave

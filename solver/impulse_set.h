@@ -1,0 +1,60 @@
+// The set that the impulses of a step problem must lie in, as the prepared step, the solve state and the
+// interior point see it. (The judge has its own, residual.cpp.)
+//
+// Every row has an interval of its own, but for contacts whose box is turned (StepProblem::box_angle_rad):
+// there the impulses of the three rows (normal, t1, t2) lie in a box along axes that are turned by the angle
+// in the tangent plane,
+//
+//     x' = F^T x,   F = | 1       |      lo <= lambda' <= hi,   w' >= 0 at lo,  w' <= 0 at hi,
+//                       |   c  -s |      w' = 0 between,         c = cos angle, s = sin angle.
+//                       |   s   c |
+//
+// Strategies work along these axes, where the set is a box; kernels and bodies see rows, where the weights of
+// such a contact are a 3x3 block D = F diag(d) F^T. Without turned boxes both are the same numbers and
+// nothing is copied.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "solver/row_weights.h"
+#include "solver/step_problem.h"
+
+namespace cleave {
+
+class ImpulseSet {
+ public:
+  // problem must outlive this object.
+  void bind(const StepProblem& problem);
+
+  // F of every turned box, ascending; empty where every row has an interval of its own.
+  std::span<const WeightBlock> axes() const { return axes_; }
+
+  // (m) from rows to axes and back; F is orthonormal, so impulses, slacks and right-hand sides turn alike.
+  void to_axes(std::span<double> x) const { to_basis(axes_, x); }
+  void to_rows(std::span<double> x) const { from_basis(axes_, x); }
+  // x (m, along the axes) in rows: x itself without turned boxes, else in scratch.
+  std::span<const double> in_rows(std::span<const double> x, std::vector<double>& scratch) const;
+
+  // impulse (m, along the axes) <- the nearest point of the set.
+  void project(std::span<double> impulse) const;
+
+  // max_r d_r |lambda_r - projection of (lambda_r - w_r / d_r)|, all (m) along the axes.
+  double residual(std::span<const double> d, std::span<const double> impulse,
+                  std::span<const double> w) const;
+
+ private:
+  const StepProblem* problem_ = nullptr;
+  std::vector<WeightBlock> axes_;
+};
+
+// Whether every row of a problem has an interval of its own.
+bool has_intervals_only(const StepProblem& problem);
+
+// Why an algorithm that takes nothing but intervals refuses a problem; empty where it has nothing else.
+// kind and name as in "strategy" "pivot".
+std::string find_set_refusal(std::string_view kind, std::string_view name, const StepProblem& problem);
+
+}  // namespace cleave
