@@ -177,7 +177,8 @@ void check_algorithm(const std::string& option, const std::string& text) {
 
 Algorithm read_named(const std::string& option, const std::string& text, const CommonValues& common) {
   check_algorithm(option, text);
-  Algorithm algorithm = read_algorithm("--" + option, text, parameters_of(option, algorithm_name(text)), common, owners_of);
+  Algorithm algorithm =
+      read_algorithm("--" + option, text, parameters_of(option, algorithm_name(text)), common, owners_of);
   if (option == "scene") name_content(algorithm);
   return algorithm;
 }

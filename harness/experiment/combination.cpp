@@ -8,7 +8,7 @@
 #include <new>
 
 #include "harness/base/hash.h"
-#include "harness/experiment/part_condition.h"
+#include "harness/experiment/cell_measures.h"
 #include "solver/problem_hash.h"
 
 namespace cleave {
@@ -59,7 +59,6 @@ void set_split(const StepProblem& problem, const Repeats& repeats, StepRecord& r
   const Split& split = *repeats.front().split;
   row.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
   row.set_partition(measure_partition(split.graph, split.parts.part_of_body));
-  row.part_condition_max = largest_part_condition(problem, split.parts.part_of_body);
   row.t_graph_ms = median(repeats, [](const auto& repeat) { return repeat.split->graph_ms; });
   row.t_partition_ms = median(repeats, [](const auto& repeat) { return repeat.split->partition_ms; });
   row.t_refine_ms = median(repeats, [](const auto& repeat) { return repeat.split->refine_ms; });
@@ -74,6 +73,12 @@ void set_verdict(const StepProblem& problem, const Outcome& outcome, StepRecord&
   if (!outcome.solved()) return;
   row.set_verdict(outcome.verdict);
   row.bound_mismatch = bound_mismatch(problem, outcome.solution.impulse);
+}
+
+void set_measures(const StepProblem& problem, const BodyGraph* graph, const Outcome& outcome,
+                  StepRecord& row) {
+  const Cell cell{problem, graph, outcome.part_of_body, outcome.solution, outcome.verdict};
+  for (const CellMeasure& measure : cell_measures()) row.measures.push_back(measure.value(cell));
 }
 
 bool uses_parts(const Algorithm& solver, const StepContext& context) {
@@ -157,6 +162,8 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   row.peak_memory_mb = peak_memory_mb();
   set_verdict(problem, chosen.outcome, row);
   if (splitter_) chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
+  if (chosen.outcome.solved())
+    set_measures(problem, chosen.split ? &chosen.split->graph : nullptr, chosen.outcome, row);
   if (!failed) {
     const auto [least, most] = std::ranges::minmax_element(repeats, {}, total_ms);
     row.t_s_min_ms = total_ms(*least);

@@ -76,4 +76,9 @@ double largest_part_condition(const StepProblem& problem, std::span<const int> p
   return largest;
 }
 
+double largest_part_condition(const Cell& cell) {
+  if (cell.graph == nullptr) return std::numeric_limits<double>::quiet_NaN();
+  return largest_part_condition(cell.problem, cell.part_of_body);
+}
+
 }  // namespace cleave

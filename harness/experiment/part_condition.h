@@ -12,6 +12,7 @@
 
 #include <span>
 
+#include "harness/experiment/cell_measures.h"
 #include "solver/step_problem.h"
 
 namespace cleave {
@@ -21,5 +22,8 @@ inline constexpr int kMostConditionBodies = 500;  // of a part: its dense H_i th
 // The largest over the parts; part_of_body: (n). Infinity where an interior row has no compliance or H_i is
 // singular to working precision, NaN where a part has more than kMostConditionBodies bodies.
 double largest_part_condition(const StepProblem& problem, std::span<const int> part_of_body);
+
+// Of a cell; NaN for a solver that ignores parts.
+double largest_part_condition(const Cell& cell);
 
 }  // namespace cleave

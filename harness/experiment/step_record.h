@@ -23,6 +23,7 @@
 #include "harness/base/about.h"
 #include "harness/base/column.h"
 #include "harness/base/parameter.h"
+#include "harness/experiment/cell_measures.h"
 #include "partition/partition.h"
 #include "solver/residual.h"
 #include "solver/step_solver.h"
@@ -92,7 +93,7 @@ struct StepRecord {
   std::string problem_file = "-";
   double joint_drift_m = kUnmeasured, last_body_z_m = kUnmeasured;
   std::string status_reason = "-";
-  double part_condition_max = kUnmeasured;
+  std::vector<double> measures;  // in the order of cell_measures(); empty where nothing was solved
   double t_s_cpu_ms = kUnmeasured, t_s_waiting_ms = kUnmeasured, t_s_max_ms = kUnmeasured;
   double peak_memory_mb = kUnmeasured;
   double residual_relative = kUnmeasured;
@@ -239,8 +240,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit("last_body_z_m", r.last_body_z_m, "height of the last body's centre after the advance");
   visit("status_reason", r.status_reason, "why the status is not ok, as far as the solver says",
         About::bookkeeping);
-  visit("part_condition_max", r.part_condition_max,
-        "largest condition number of a part's matrix with all its interior rows free, 1-norm, SI units");
+  for (std::size_t i = 0; i < cell_measures().size(); ++i)
+    visit(cell_measures()[i].name, r.measures.empty() ? kUnmeasured : r.measures[i], cell_measures()[i].help);
   visit_machine("t_s_cpu_ms", r.t_s_cpu_ms, "processor time of all threads in the solve that took t_s_ms");
   visit_machine("t_s_waiting_ms", r.t_s_waiting_ms,
                 "time in which threads of that solve were ready to run and had no core, summed over threads");

@@ -1,4 +1,5 @@
-// The scenes of the stability ladder hold what the closed forms of scripts/cleave_scripts/ladder/rungs.py rely on.
+// The scenes of the stability ladder hold what the closed forms of scripts/cleave_scripts/ladder/rungs.py
+// rely on.
 #include <gtest/gtest.h>
 
 #include "scene_world.h"

@@ -165,8 +165,9 @@ class OdeStacks : public OdeFacts {
   inline static int messages_ = 0;
 };
 
-// Bodies, and the joints of a body, are taken up from the one made last. From the top down every contact between boxes starts exactly at
-// the velocity it asks for, nothing, until those on the ground are driven: then the first pivot has length 0.
+// Bodies, and the joints of a body, are taken up from the one made last. From the top down every contact
+// between boxes starts exactly at the velocity it asks for, nothing, until those on the ground are driven:
+// then the first pivot has length 0.
 TEST_F(OdeStacks, WorldStepGivesUpWhereNoContactIsPushedOut) {
   EXPECT_GT(messages_of_a_step({1e-7, 1e-6, 0}, true), 0);
 }

@@ -10,7 +10,8 @@
 namespace cleave {
 
 inline std::vector<std::string> bad_values(const Parameter& parameter) {
-  if (parameter.kind == Parameter::Kind::path) return {};  // what is wrong with a file is the scene's own matter
+  if (parameter.kind == Parameter::Kind::path)
+    return {};  // what is wrong with a file is the scene's own matter
   std::vector<std::string> values = {"", " ", "nonsense", "1x", " 1", "nan", "inf", "-inf", "-1", "1e400"};
   if (parameter.kind == Parameter::Kind::word) return values;
   values.push_back(number_text(parameter.range.min - 1));

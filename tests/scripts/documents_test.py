@@ -14,7 +14,7 @@ USED_BY = {
     "ninja-build": ("CMakePresets.json", "Ninja"),
     "g++": ("CMakeLists.txt", "OpenMP"),
     "pkg-config": ("CMakeLists.txt", "PkgConfig"),
-    "git": ("harness/build_info.cmake", "git"),
+    "git": ("harness/files/build_info.cmake", "git"),
     "libode-dev": ("CMakeLists.txt", "ode"),
     "libeigen3-dev": ("CMakeLists.txt", "Eigen3"),
     "libsuitesparse-dev": ("CMakeLists.txt", "cholmod", "camd", "amd"),
@@ -39,13 +39,17 @@ def packages():
 
 
 def step_record_columns():
-    """Columns of steps.csv as harness/step_record.h lists them, with one t_s_* a stage and worker count."""
-    text = (ROOT / "harness" / "step_record.h").read_text()
+    """Columns of steps.csv as harness/experiment/step_record.h lists them and algorithms declare them, with one t_s_* a stage and worker count."""
+    text = (ROOT / "harness" / "experiment" / "step_record.h").read_text()
     columns = re.findall(r'visit(?:_machine)?\(\s*"(\w+)",', text)
+    declared = "".join(file.read_text() for room in ("partition", "solver", "harness") for file in (ROOT / room).rglob("*.cpp"))
+    parameters = [name.replace("-", "_") for name in re.findall(r'\.name = "([\w-]+)"', declared)]
+    table = (ROOT / "harness" / "experiment" / "cell_measures.cpp").read_text()
+    parameters += re.findall(r'\{"(\w+)",', table)
     clock = (ROOT / "solver" / "stage_clock.h").read_text()
     stages = re.findall(r'"(\w+)"', re.search(r"kStageNames = \{(.*?)\}", clock, re.S).group(1))
     workers = re.search(r"kModelWorkers = \{(.*?)\}", clock).group(1).replace(" ", "").split(",")
-    return set(columns) | {f"t_s_{stage}_ms" for stage in stages
+    return set(columns) | set(parameters) | {f"t_s_{stage}_ms" for stage in stages
                           } | {f"t_s_model_p{count}_ms" for count in workers}
 
 
@@ -105,7 +109,7 @@ class ColumnsTest(unittest.TestCase):
                          sorted(step_record_columns()))
 
     def test_results_readme_names_the_columns_of_the_machine(self):
-        record = (ROOT / "harness" / "step_record.h").read_text()
+        record = (ROOT / "harness" / "experiment" / "step_record.h").read_text()
         marked = set(re.findall(r'visit_machine\(\s*"(\w+)', record))
         text = (ROOT / "results" / "README.md").read_text()
         sentence = re.search(r"are the machine's: (.*?)\.\n", text, re.S).group(1)

@@ -6,7 +6,7 @@ import unittest
 from stand_in import StandInCase
 from synthetic import ROOT
 
-import interior_constants
+from cleave_scripts.measurements import interior_constants
 
 RECORD = """#!/usr/bin/python3
 import os, pathlib, sys

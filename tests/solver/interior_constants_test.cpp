@@ -7,8 +7,8 @@
 #include <string>
 #include <type_traits>
 
-#include "solver/registry.h"
 #include "solver/direct_solver.h"
+#include "solver/registry.h"
 #include "solver/strategies/interior_constants_list.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/solver_checks.h"
@@ -71,7 +71,8 @@ TEST(InteriorConstants, ASolverUsesThoseItWasMadeWithAndNoOther) {
   const SolveSummary first = solve(pile, *named, before);
   InteriorConstants without;
   without.corrections = 0;
-  const auto own = make_direct_solver("interior-point", "monolithic", {}, Settings(), make_interior_point(without));
+  const auto own =
+      make_direct_solver("interior-point", "monolithic", {}, Settings(), make_interior_point(without));
   const SolveSummary other = solve(pile, *own, changed);
   EXPECT_TRUE(is_exact(pile, other, changed));
   EXPECT_NE(other.factorizations, first.factorizations);
@@ -83,9 +84,10 @@ TEST(InteriorConstants, TheDefaultsAreThoseOfTheNamedStrategy) {
   const StepProblem pile = make_pile(2, {.layers = 4, .cfm = 1e-8});
   Solution named, own;
   const SolveSummary first = solve(pile, *make_step_solver("interior-point:monolithic", {}), named);
-  const SolveSummary second = solve(
-      pile, *make_direct_solver("interior-point", "monolithic", {}, Settings(), make_interior_point(InteriorConstants{})),
-      own);
+  const SolveSummary second = solve(pile,
+                                    *make_direct_solver("interior-point", "monolithic", {}, Settings(),
+                                                        make_interior_point(InteriorConstants{})),
+                                    own);
   EXPECT_EQ(second.factorizations, first.factorizations);
   EXPECT_EQ(own.impulse, named.impulse);
 }

@@ -118,8 +118,7 @@ TEST_P(TurnedBoxTest, DirectionsSolveTheirOwnSystem) {
   step.prepare(problem);
   SolveState state(DirectOptions{}, clock);
   SolveSummary summary;
-  const auto row =
-      std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return k.name; });
+  const auto row = std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return k.name; });
   const std::unique_ptr<Kernel> kernel = row->make(defaults_of(*row));
   kernel->analyze(step, parts, state.tasks);
   const std::vector<double> cold(problem.row_count(), 0.0);

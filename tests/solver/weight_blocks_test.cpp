@@ -59,8 +59,7 @@ class WeightBlocksTest : public testing::TestWithParam<std::string> {
     ParallelTasks tasks(clock, threads);
     PreparedStep step;
     step.prepare(problem);
-    const auto row =
-        std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return k.name; });
+    const auto row = std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return k.name; });
     const std::unique_ptr<Kernel> kernel = row->make(defaults_of(*row));
     kernel->analyze(step, parts, tasks);
     EXPECT_TRUE(kernel->factor({system.d, system.blocks}, tasks));
@@ -195,8 +194,7 @@ TEST_P(WeightBlocksTest, BlocksChangeFromFactorToFactor) {
   ParallelTasks tasks(clock, 1);
   PreparedStep step;
   step.prepare(problem);
-  const auto row =
-      std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return k.name; });
+  const auto row = std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return k.name; });
   const std::unique_ptr<Kernel> kernel = row->make(defaults_of(*row));
   kernel->analyze(step, parts, tasks);
   for (const LinearSystem* system : {&blocks, &scalar, &blocks}) {
