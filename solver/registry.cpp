@@ -52,30 +52,35 @@ std::span<const StrategyRow> strategy_table() {
         "block principal pivoting, hands over to interior-point when stuck",
         "Judice and Pires 1994; Murty 1974",
         {max_iterations(), predictor_sweeps()}},
+       true,
        nullptr,
        make_pivot},
       {{"newton",
         "semi-smooth Newton with exact line search",
         "Qi and Sun 1993; Todorov 2014",
         {max_iterations()}},
+       false,
        nullptr,
        make_newton},
       {{"interior-point",
         "Mehrotra predictor-corrector with an exact last solve",
         "Mehrotra 1992",
         {max_iterations()}},
+       true,
        nullptr,
        make_interior_point},
       {{"alternate",
         "parts and interface in turn, as published; may not converge",
         "Peiret et al. 2019, section 5",
         {max_iterations()}},
+       false,
        "schur-rows",
        make_alternate},
       {{"auto",
         "chosen per step from row kinds and compliance",
         "solver/strategies/automatic.h",
         {max_iterations(), predictor_sweeps()}},
+       true,
        nullptr,
        nullptr},
   };
@@ -116,14 +121,16 @@ std::span<const KernelRow> kernel_table() {
 
 std::span<const SolverRow> solver_table() {
   static const SolverRow table[] = {
-      {{"dense", "pivot:dense, the oracle", "-"}, "pivot", "dense", nullptr},
-      {{"monolithic", "pivot:monolithic", "-"}, "pivot", "monolithic", nullptr},
+      {{"dense", "pivot:dense, the oracle", "-"}, true, "pivot", "dense", nullptr},
+      {{"monolithic", "pivot:monolithic", "-"}, true, "pivot", "monolithic", nullptr},
       {{"schur", "pivot:schur-rows, the paper's parallel solver", "Liu and Andrews 2022, section 2"},
+       true,
        "pivot",
        "schur-rows",
        nullptr},
-      {{"exact", "auto:auto", "-"}, "auto", "auto", nullptr},
+      {{"exact", "auto:auto", "-"}, true, "auto", "auto", nullptr},
       {{"pgs", "projected Gauss-Seidel in natural order", "Catto 2005", {sweeps()}},
+       false,
        nullptr,
        nullptr,
        make_pgs},
@@ -152,6 +159,13 @@ SolverHalves solver_halves(const std::string& name) {
   const SolverRow* row = find_row(solver_table(), name);
   return row != nullptr && row->strategy != nullptr ? SolverHalves{row->strategy, row->kernel}
                                                     : SolverHalves{};
+}
+
+bool is_always_exact(const std::string& name) {
+  const SolverHalves halves = solver_halves(name);
+  if (const StrategyRow* row = find_row(strategy_table(), halves.strategy)) return row->always_exact;
+  const SolverRow* row = find_row(solver_table(), name);
+  return row != nullptr && row->always_exact;
 }
 
 std::vector<Parameter> solver_parameters(const std::string& name) {

@@ -16,7 +16,10 @@ namespace cleave {
 class Kernel;    // solver/kernels/kernel.h
 class Strategy;  // solver/strategies/strategy.h
 
+// always_exact: ends within the judge's limit on every problem that it takes. Others say not_converged,
+// honestly.
 struct StrategyRow : AlgorithmEntry {
+  bool always_exact;
   const char* only_kernel;                                      // the one kernel it runs on; nullptr: any
   std::unique_ptr<Strategy> (*make)(const Settings& settings);  // nullptr: chosen per step (auto)
 };
@@ -29,6 +32,7 @@ struct KernelRow : AlgorithmEntry {
 
 // Short names: either an alias of strategy:kernel, or a baseline of its own.
 struct SolverRow : AlgorithmEntry {
+  bool always_exact;     // of a baseline; an alias is what its strategy is
   const char* strategy;  // of an alias
   const char* kernel;
   std::unique_ptr<StepSolver> (*make)(const SolveOptions& options,
@@ -50,6 +54,9 @@ struct SolverHalves {
   std::string strategy, kernel;
 };
 SolverHalves solver_halves(const std::string& name);
+
+// Whether the solver of this name is always exact.
+bool is_always_exact(const std::string& name);
 
 // What a solver of this name lets its users choose: the parameters of its strategy and its kernel, or its
 // own.

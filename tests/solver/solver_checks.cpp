@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "solver/registry.h"
+
 namespace cleave {
 namespace {
 
@@ -65,17 +67,11 @@ bool same_bytes(std::span<const double> a, std::span<const double> b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
 }
 
-bool may_miss(std::string_view solver) {
-  const std::string_view strategy = solver.substr(0, solver.find(':'));
-  return strategy == "alternate" || strategy == "newton" || strategy.starts_with("pgs") ||
-         strategy.starts_with("jacobi");
-}
+bool may_miss(std::string_view solver) { return !is_always_exact(std::string(solver)); }
 
-std::string_view kernel_of(std::string_view solver) {
-  if (solver == "schur") return "schur-rows";
-  if (solver == "dense" || solver == "monolithic") return solver;
-  const std::size_t colon = solver.find(':');
-  return colon == std::string_view::npos ? std::string_view() : solver.substr(colon + 1);
+std::string kernel_of(std::string_view solver) {
+  const std::string kernel = solver_halves(std::string(solver)).kernel;
+  return kernel == "auto" ? "" : kernel;
 }
 
 Solution cold_start(const StepProblem& problem) {

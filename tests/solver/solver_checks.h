@@ -32,7 +32,7 @@ bool same_bytes(std::span<const double> a, std::span<const double> b);
 // Iterative solvers and those known to cycle may end with not_converged; all others must be exact.
 bool may_miss(std::string_view solver);
 // The part of a solver name behind the colon ("" for a short name other than dense, monolithic, schur).
-std::string_view kernel_of(std::string_view solver);
+std::string kernel_of(std::string_view solver);
 
 Solution cold_start(const StepProblem& problem);
 

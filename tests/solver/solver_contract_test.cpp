@@ -309,7 +309,7 @@ TEST_P(SolverContractTest, SaysWhatRan) {
   const SolveSummary summary = solve(problem, sliced_parts(5, 2), solution);
   EXPECT_FALSE(summary.strategy.empty());
   EXPECT_FALSE(summary.kernel.empty());
-  const std::string_view kernel = kernel_of(GetParam());
+  const std::string kernel = kernel_of(GetParam());
   if (!kernel.empty() && kernel != "auto") {
     EXPECT_EQ(summary.kernel, kernel);
   }
