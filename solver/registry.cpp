@@ -7,6 +7,8 @@
 #include "solver/baselines/baselines.h"
 #include "solver/direct_options.h"
 #include "solver/direct_solver.h"
+#include "solver/kernels/kernel.h"
+#include "solver/strategies/strategy.h"
 
 namespace cleave {
 namespace {

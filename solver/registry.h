@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "harness/base/algorithm.h"
-#include "solver/kernels/kernel.h"
 #include "solver/step_solver.h"
-#include "solver/strategies/strategy.h"
 
 namespace cleave {
+
+class Kernel;    // solver/kernels/kernel.h
+class Strategy;  // solver/strategies/strategy.h
 
 // always_exact: ends within the judge's limit on every problem that it takes. Others say not_converged,
 // honestly.

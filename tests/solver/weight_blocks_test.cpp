@@ -8,6 +8,7 @@
 #include <memory>
 #include <string>
 
+#include "solver/kernels/kernel.h"
 #include "solver/impulse_set.h"
 #include "solver/registry.h"
 #include "tests/solver/problem_makers.h"
