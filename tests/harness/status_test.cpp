@@ -26,14 +26,15 @@ const std::map<std::string, Files> kGivers = {
     {"timeout", {}},  // reserved: a run has no limit of time yet
     {"out_of_memory", {"harness/experiment/combination.cpp"}},
     {"diverged", {"solver/direct_solver.cpp", "harness/experiment/combination.cpp"}},
-    {"refused", {"solver/step_solver.cpp", "harness/world/ode_baselines.cpp"}},
+    {"refused",
+     {"solver/step_solver.cpp", "harness/world/ode_baselines.cpp", "harness/experiment/combination.cpp"}},
     {"crashed", {"harness/world/ode_baselines.cpp"}},
     {"skipped", {"harness/experiment/step_record.h"}},
 };
 
-// status = SolveStatus::refused, status = "skipped".
+// status = SolveStatus::refused, unsolved(problem, SolveStatus::refused, ...), status = "skipped".
 std::map<std::string, Files> find_givers() {
-  static const std::regex pattern(R"([^=!<>]=\s*SolveStatus::(\w+)|status = \"(\w+)\")");
+  static const std::regex pattern(R"((?:[^=!<>]=\s*|problem, )SolveStatus::(\w+)|status = \"(\w+)\")");
   std::map<std::string, Files> givers;
   for (const char* folder : {"harness", "partition", "scenarios", "solver"})
     for (const auto& entry : fs::recursive_directory_iterator(fs::path(CLEAVE_SOURCE_DIR) / folder)) {

@@ -270,6 +270,16 @@ const std::vector<Breakage> kBreakages = {
        int& part = f.partitions.at(kLabel).part_of_body[3];
        part = part == 0 ? 1 : 0;
      }},
+    {"parts from files", "from files, refiner fn; --refiner: 'fn' is unknown",
+     [](ProblemFile& f) {
+       f.partitions.at(kLabel).partitioner = "file@0123456789abcdef";
+       f.partitions.at(kLabel).refiner = "fn";
+     }},
+    {"fingerprint of a file", "part ids have the fingerprint",
+     [](ProblemFile& f) {
+       f.partitions.at(kLabel).partitioner = "file@0123456789abcdef";
+       f.partitions.at(kLabel).refiner = "none";
+     }},
     {"limit", "says ok with a residual of 1e-6 m/s", nullptr},  // of the table, see below
     {"row", "status = ok, computed anew: a residual above the limit",
      [](ProblemFile& f) { f.solutions.at(kLabel).impulse[4] += 1; }},
