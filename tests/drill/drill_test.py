@@ -1,21 +1,23 @@
 """The drill: a partitioner that is not grown, a column and a baseline come in, each as one file and one row
-(newcomers.patch), and everything takes them without another edit.
+(rows.toml), and everything takes them without another edit.
 
-A copy of the tree and of what is built gets the patch; only what it touches is compiled again.
+A copy of the tree gets them; only what they touch is compiled, and linked with what is built.
 """
 import csv
+import json
 import os
 import pathlib
-import re
+import shlex
 import shutil
 import subprocess
 import tempfile
+import tomllib
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(os.environ["CLEAVE_BINARY_DIR"])
 HERE = pathlib.Path(__file__).parent
-TARGETS = ("cleave", "partition_tests", "solver_tests")
+NEWCOMERS = tomllib.loads((HERE / "rows.toml").read_text())["newcomer"]
 
 
 def run(*command, cwd=None, codes=(0,), **environment):
@@ -35,12 +37,39 @@ def copy_sources(to):
         shutil.copy2(ROOT / name, to / name)
 
 
-def copy_build(to):
-    """Objects, libraries and ninja's notes, with the old place replaced by the new one in cmake's cache."""
-    shutil.copytree(BUILD, to, ignore=shutil.ignore_patterns("*_benchmark", "*_tests", "Testing", "*.log"))
-    shutil.copy2(BUILD / ".ninja_log", to / ".ninja_log")
-    cache = to / "CMakeCache.txt"
-    cache.write_text(cache.read_text().replace(str(ROOT), str(to.parents[1])))
+def compiled(newcomer, tree, objects):
+    """Compiles the newcomer and its registry as the build compiles that registry."""
+    entries = {entry["file"]: entry for entry in json.loads((BUILD / "compile_commands.json").read_text())}
+    known = entries[str(ROOT / newcomer["registry"])]
+    made = []
+    for name in (newcomer["file"], newcomer["registry"]):
+        made.append(objects / (name.replace("/", "_") + ".o"))
+        words = shlex.split(known["command"])
+        words[words.index("-o") + 1] = str(made[-1])
+        words[-1] = str(tree / name)
+        run(*words, cwd=known["directory"])
+    return made
+
+
+def linked(target, objects, to):
+    """Links a program of the build with these objects in place of those of its libraries."""
+    commands = run("ninja", "-C", BUILD, "-t", "commands", target).splitlines()
+    words = shlex.split(commands[-1].split(" && ")[1])
+    at = words.index("-o") + 1
+    words[at:at + 1] = [str(to), *map(str, objects)]
+    run(*words, cwd=BUILD)
+
+
+def come_in(newcomer, tree):
+    """One file, and one row at the end of its table."""
+    shutil.copy(HERE / pathlib.Path(newcomer["file"]).name, tree / newcomer["file"])
+    registry = tree / newcomer["registry"]
+    text = registry.read_text()
+    start = text.index(newcomer["table"])
+    end = text.index("\n  };", start) + 1
+    text = text[:end] + newcomer["row"].lstrip("\n") + text[end:]
+    first = text.index("namespace cleave {\n") + len("namespace cleave {\n")
+    registry.write_text(text[:first] + "\n" + newcomer["declaration"] + "\n" + text[first:])
 
 
 class DrillTest(unittest.TestCase):
@@ -53,12 +82,16 @@ class DrillTest(unittest.TestCase):
         cls.out = pathlib.Path(cls.directory.name) / "out"
         cls.tree.mkdir()
         copy_sources(cls.tree)
-        build = cls.tree / "build" / BUILD.name
-        copy_build(build)
-        run("git", "apply", "--unsafe-paths", f"--directory={cls.tree}", HERE / "newcomers.patch", cwd="/")
-        run("cmake", "-S", cls.tree, "-B", build)
-        run("cmake", "--build", build, "--target", *TARGETS)
-        cls.build, cls.program = build, build / "cleave"
+        cls.build = pathlib.Path(cls.directory.name) / "build"
+        cls.build.mkdir()
+        made = {}
+        for newcomer in NEWCOMERS:
+            come_in(newcomer, cls.tree)
+            made[newcomer["file"].split("/")[0]] = compiled(newcomer, cls.tree, cls.build)
+        cls.program = cls.build / "cleave"
+        linked("cleave", sum(made.values(), []), cls.program)
+        linked("tests/partition_tests", made["partition"], cls.build / "partition_tests")
+        linked("tests/solver_tests", made["solver"], cls.build / "solver_tests")
         cls.cleave("run", "--scene", "rock_pile", "--bodies", "30", "--steps", "40", "--measure-every", "20", "--repeats",
                    "1", "--partitioner", "all,stripes@stripe-bodies=5", "--refiner", "all", "--solver",
                    "schur,relax,relax@relaxations=40", "--out", cls.out / "run", codes=(0, 2))
@@ -72,15 +105,13 @@ class DrillTest(unittest.TestCase):
     def script(self, name, *arguments, codes=(0,)):
         return run(self.tree / "scripts" / name, *arguments, codes=codes, CLEAVE_PROGRAM=str(self.program))
 
-    def test_each_newcomer_is_one_file_and_one_row(self):
-        text = (HERE / "newcomers.patch").read_text(encoding="utf-8")
-        files = re.findall(r"^diff --git a/(\S+)", text, re.M)
-        new = re.findall(r"^\+\+\+ b/(\S+)", "\n".join(part for part in text.split("diff --git ") if "new file" in part),
-                         re.M)
-        self.assertEqual(sorted(set(files) - set(new)), ["harness/experiment/cell_measures.cpp",
-                                                         "partition/registry.cpp", "solver/registry.cpp"])
-        self.assertEqual(len(new), 3)
-        self.assertFalse(re.search(r"^-(?!--)", text, re.M), "a line of the tree is changed")
+    def test_nothing_else_was_touched(self):
+        """Beside the three files and three registries the copy is the tree."""
+        names = run("git", "ls-files", "-z", "harness", "partition", "scenarios", "scripts", "solver", cwd=ROOT).split("\0")
+        changed = {name for name in filter(None, names) if (ROOT / name).is_file()
+                   and (self.tree / name).read_bytes() != (ROOT / name).read_bytes()}
+        self.assertEqual(changed, {newcomer["registry"] for newcomer in NEWCOMERS})
+        self.assertEqual(len(NEWCOMERS), 3)
 
     def test_list_and_help_show_them(self):
         self.assertIn("stripes", self.cleave("list", "partitioners", "--names").split())
@@ -126,8 +157,8 @@ class DrillTest(unittest.TestCase):
         table = self.script("table1", self.out / "run")
         self.assertRegex(table, r"stripes +none")
         self.assertRegex(table, r"stripes@stripe-bodies=5 +fm")
-        self.script("report", self.out / "run", "--out", self.out / "report")
-        page = "".join(file.read_text(encoding="utf-8") for file in (self.out / "report").rglob("*.html"))
+        self.script("report", self.out / "run")
+        page = "".join(file.read_text(encoding="utf-8") for file in (self.out / "run").rglob("*.html"))
         self.assertIn("stripes", page)
 
     def test_reproduce_runs_beside_them(self):
@@ -138,7 +169,7 @@ class DrillTest(unittest.TestCase):
 
     def test_contract_tests_take_them(self):
         for program, name in (("partition_tests", "stripes"), ("solver_tests", "relax")):
-            text = run(self.build / "tests" / program, f"--gtest_filter=*{name}*")
+            text = run(self.build / program, f"--gtest_filter=*{name}*")
             self.assertRegex(text, r"\[  PASSED  \] ([5-9]|\d\d) tests")
 
 
