@@ -17,7 +17,7 @@ USED_BY = {
     "git": ("harness/files/build_info.cmake", "git"),
     "libode-dev": ("CMakeLists.txt", "ode"),
     "libeigen3-dev": ("CMakeLists.txt", "Eigen3"),
-    "libsuitesparse-dev": ("CMakeLists.txt", "cholmod", "camd", "amd"),
+    "libsuitesparse-dev": ("CMakeLists.txt", "CAMD", "cholmod", "camd", "amd"),
     "libopenblas-dev": ("tests/CMakeLists.txt", "openblas"),
     "libcli11-dev": ("CMakeLists.txt", "CLI11"),
     "libhdf5-dev": ("CMakeLists.txt", "HDF5"),
@@ -44,7 +44,8 @@ def step_record_columns():
     text = (ROOT / "harness" / "experiment" / "step_record.h").read_text()
     columns = re.findall(r'visit(?:_machine)?\(\s*"(\w+)",', text)
     declared = "".join(file.read_text() for room in ("partition", "solver", "harness") for file in (ROOT / room).rglob("*.cpp"))
-    parameters = [name.replace("-", "_") for name in re.findall(r'\.name = "([\w-]+)"', declared)]
+    parameters = [name.replace("-", "_") for name in re.findall(r'\.name = "([\w-]+)"', declared)
+                  if name != "path"]  # a file's name is in no column
     table = (ROOT / "harness" / "experiment" / "cell_measures.cpp").read_text()
     parameters += re.findall(r'\{"(\w+)",', table)
     clock = (ROOT / "solver" / "stage_clock.h").read_text()
