@@ -1,0 +1,34 @@
+# What a build with sanitisers (presets asan and tsan) does otherwise with the tests; see README.md of this folder.
+# Sets TEST_FILTER (of GoogleTest) and TEST_ENVIRONMENT (a list, each ; behind a backslash) of all tests.
+
+# A finding ends the program, with a code that no test expects of a program that it starts.
+if(CLEAVE_SANITIZE MATCHES "thread")
+  set(PRESET tsan)
+  # Only with it does the sanitiser see how OpenMP orders its threads.
+  list(GET OpenMP_CXX_LIBRARIES 0 OPENMP_LIBRARY)
+  cmake_path(GET OPENMP_LIBRARY PARENT_PATH OPENMP_FOLDER)
+  find_library(ARCHER archer HINTS ${OPENMP_FOLDER} REQUIRED)
+  find_program(SYMBOLIZER NAMES llvm-symbolizer-14 llvm-symbolizer REQUIRED)
+  set(TEST_ENVIRONMENT "OMP_TOOL_LIBRARIES=${ARCHER}"
+      "TSAN_OPTIONS=halt_on_error=1:exitcode=66:ignore_noninstrumented_modules=1:external_symbolizer_path=${SYMBOLIZER}")
+else()
+  set(PRESET asan)
+  set(TEST_ENVIRONMENT "ASAN_OPTIONS=exitcode=66:detect_stack_use_after_return=1:check_initialization_order=1:allocator_may_return_null=1"
+      "UBSAN_OPTIONS=exitcode=66:print_stacktrace=1")
+endif()
+
+# Planted faults show that the sanitisers are there and that a finding fails.
+add_executable(sanitised_tests ${CMAKE_CURRENT_LIST_DIR}/${PRESET}_faults_test.cpp)
+target_link_libraries(sanitised_tests PRIVATE cleave_solver GTest::gtest_main)
+add_test(NAME planted_faults COMMAND sanitised_tests)
+add_test(NAME scenes COMMAND ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/scenes_test.py -v)
+set_tests_properties(planted_faults scenes PROPERTIES TIMEOUT 600
+                     ENVIRONMENT "CLEAVE_BINARY_DIR=${CMAKE_BINARY_DIR};${TEST_ENVIRONMENT}")
+
+set(LEFT_OUT ${CMAKE_CURRENT_LIST_DIR}/left_out.txt)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${LEFT_OUT})
+file(STRINGS ${LEFT_OUT} LINES REGEX "^(${PRESET}|both) ")
+list(TRANSFORM LINES REPLACE "^[a-z]+ +([^ ]+) .*" "\\1")
+list(JOIN LINES ":" TEST_FILTER)
+string(PREPEND TEST_FILTER "-")
+list(JOIN TEST_ENVIRONMENT "\\\\;" TEST_ENVIRONMENT)  # gtest_discover_tests takes a list apart
