@@ -1,12 +1,10 @@
 #include "harness/files/manifest.h"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
 
 #include "harness/files/json_writer.h"
+#include "harness/files/whole_file.h"
 
 namespace cleave {
 namespace {
@@ -112,16 +110,6 @@ void add_columns(JsonWriter& json, const std::vector<Column>& columns) {
   json.end_array();
 }
 
-void write_atomically(const std::filesystem::path& path, const std::string& text) {
-  const std::filesystem::path temporary = path.string() + ".part";
-  errno = 0;
-  std::ofstream file(temporary, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::runtime_error(temporary.string() + ": cannot be written: " + std::strerror(errno));
-  std::filesystem::rename(temporary, path);
-}
-
 }  // namespace
 
 Manifest::Manifest(std::filesystem::path path, WorkDescription description)
@@ -133,7 +121,11 @@ void Manifest::around(const std::function<WorkResult()>& work) {
   try {
     result = work();
   } catch (const std::exception& error) {
-    write_end("failed", result, error.what());
+    // What went wrong first is what the user has to know, also where the disk that is full takes no manifest either.
+    try {
+      write_end("failed", result, error.what());
+    } catch (const std::exception&) {
+    }
     throw;
   }
   write_end(result.interrupted ? "interrupted" : "complete", result, "");
@@ -174,7 +166,7 @@ void Manifest::write(const std::string& state, const WorkResult* result, const s
   add_machine(json, machine_, result != nullptr ? &load_average_end_ : nullptr);
   add_columns(json, description_.columns);
   json.end_object();
-  write_atomically(path_, json.text());
+  write_whole_file(path_, json.text());
 }
 
 }  // namespace cleave
