@@ -5,11 +5,12 @@
 
 namespace cleave {
 
-void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double> impulse,
-                         std::span<double> v) {
+void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double> impulse, std::span<double> v,
+                         const std::atomic<bool>* stop) {
   const StepProblem& problem = step.problem();
   assert(step.set().axes().empty());
   for (int sweep = 0; sweep < sweeps; ++sweep) {
+    check_stop(stop);
     for (const RowGroup& g : step.groups()) {
       // The velocities of the two bodies stay in registers over the rows of the pair.
       double u[12] = {};

@@ -14,11 +14,20 @@ namespace {
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
+constexpr int kStopSignals[] = {SIGINT, SIGTERM};
+
+// The next one, of either kind, ends the program as if nothing had been set.
+void take_stop(int) {
+  stop = true;
+  for (const int signal : kStopSignals) ::signal(signal, SIG_DFL);
+}
+
 void stop_on_signals() {
   struct sigaction action {};
-  action.sa_handler = [](int) { stop = true; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
+  action.sa_handler = take_stop;
+  action.sa_flags = SA_RESTART;
+  for (const int signal : kStopSignals) ::sigaddset(&action.sa_mask, signal);  // one handler after the other
+  for (const int signal : kStopSignals) ::sigaction(signal, &action, nullptr);
 }
 
 int exit_code(const RunSummary& summary) {

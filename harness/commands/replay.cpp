@@ -114,7 +114,7 @@ class Replay {
  public:
   // Makes every solver, partitioner and refiner.
   explicit Replay(const ReplayOptions& options)
-      : options_(options), combinations_(make_combinations(options.solve, no_world_)) {}
+      : options_(options), combinations_(make_combinations(options.solve, no_world_, &stop_requested())) {}
 
   RunSummary run(const fs::path& out) {
     Stopwatch watch;
@@ -122,9 +122,13 @@ class Replay {
     CsvRecorder recorder(out / "steps.csv", csv_header());
     ProgressLine line("replay");
     const int total = static_cast<int>(options_.files.size());
-    for (int i = 0; i < total && !stop_requested(); ++i) {
-      solve(options_.files[i], out, recorder);
-      line.update(i + 1, total);
+    try {
+      for (int i = 0; i < total && !stop_requested(); ++i) {
+        solve(options_.files[i], out, recorder);
+        line.update(i + 1, total);
+      }
+    } catch (const SolveStopped&) {
+      // The rows of the problem at hand are not all there, so none is written.
     }
     summary_.wall_s = watch.lap_ms() / 1000;
     summary_.interrupted = stop_requested();

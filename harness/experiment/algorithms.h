@@ -69,7 +69,9 @@ std::string owners_of(const std::string& parameter);
 
 const SceneEntry& scene_row(const Algorithm& scene);
 
-// Throws std::invalid_argument for an unknown name. context: see ode_baselines.h; must outlive the solver.
-std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, int threads, const StepContext& context);
+// Throws std::invalid_argument for an unknown name. context: see ode_baselines.h; must outlive the solver. ODE's
+// own solvers cannot be stopped.
+std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, const SolveOptions& options,
+                                        const StepContext& context);
 
 }  // namespace cleave

@@ -79,7 +79,7 @@ void append(const std::vector<Algorithm>& more, std::vector<const Algorithm*>& t
 }
 
 bool works_on_parts(const Algorithm* solver) {
-  return make_solver(*solver, 1, StepContext{})->uses_partition();
+  return make_solver(*solver, {}, StepContext{})->uses_partition();
 }
 
 // A value that nothing in the run reads would do nothing.

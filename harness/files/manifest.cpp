@@ -131,16 +131,22 @@ void Manifest::around(const std::function<WorkResult()>& work) {
   write_end(result.interrupted ? "interrupted" : "complete", result, "");
 }
 
+// A disk that takes no second file leaves room for another word in the first.
+void Manifest::write_end(const std::string& state, const WorkResult& result, const std::string& message) {
+  utc_end_ = utc_now();
+  load_average_end_ = load_average();
+  try {
+    write(state, &result, message);
+  } catch (const std::exception&) {
+    replace_in_place(path_, R"("state": "running")", R"("state": "failed" )");
+    throw;
+  }
+}
+
 void Manifest::write_start() {
   utc_start_ = utc_now();
   machine_ = machine_info();
   write("running", nullptr, "");
-}
-
-void Manifest::write_end(const std::string& state, const WorkResult& result, const std::string& message) {
-  utc_end_ = utc_now();
-  load_average_end_ = load_average();
-  write(state, &result, message);
 }
 
 void Manifest::write(const std::string& state, const WorkResult* result, const std::string& message) const {

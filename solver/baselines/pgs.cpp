@@ -14,7 +14,8 @@ constexpr std::string_view kName = "pgs";
 
 class Pgs : public StepSolver {
  public:
-  Pgs(int threads, int sweeps) : sweeps_(sweeps), clock_(threads) {}
+  Pgs(const SolveOptions& options, int sweeps)
+      : sweeps_(sweeps), stop_(options.stop), clock_(options.threads) {}
   bool uses_partition() const override { return false; }
 
  private:
@@ -34,7 +35,7 @@ class Pgs : public StepSolver {
     {
       StageTimer timer(clock_, Stage::predict);
       step_.velocity(solution.impulse, solution.velocity);
-      gauss_seidel_sweeps(step_, sweeps_, solution.impulse, solution.velocity);
+      gauss_seidel_sweeps(step_, sweeps_, solution.impulse, solution.velocity, stop_);
       summary.iterations = sweeps_;
     }
     slack_.resize(problem.row_count());
@@ -49,6 +50,7 @@ class Pgs : public StepSolver {
   }
 
   int sweeps_;
+  const std::atomic<bool>* stop_;
   StageClock clock_;
   PreparedStep step_;
   std::vector<double> slack_;
@@ -57,7 +59,7 @@ class Pgs : public StepSolver {
 }  // namespace
 
 std::unique_ptr<StepSolver> make_pgs(const SolveOptions& options, const Settings& settings) {
-  return std::make_unique<Pgs>(options.threads, settings.integer("sweeps"));
+  return std::make_unique<Pgs>(options, settings.integer("sweeps"));
 }
 
 }  // namespace cleave
