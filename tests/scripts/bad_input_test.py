@@ -189,7 +189,8 @@ class BadInputTest(unittest.TestCase):
 
         (self.scratch.root / "file.csv").write_text("old")
         self.before = files_of(self.scratch.root)
-        result = self.scratch.run("extremes_table", "{extremes}", "--csv", str(self.scratch.root / "file.csv"), preexec_fn=no_room)
+        result = self.scratch.run("extremes_table", "{extremes}", "--csv", str(self.scratch.root / "file.csv"),
+                                  preexec_fn=no_room)
         self.check(result, words=["file.csv: cannot be written: File too large"])
 
 
