@@ -1,9 +1,9 @@
 """Moves what the stages of scripts/reference made into results/, with a note of what made each file."""
 import json
-import shutil
 
 from cleave_scripts.measurements.reference_stages import RUN_FILES, STAGES
 from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.whole_file import write_bytes, write_text
 
 
 def _sources(stage, directory):
@@ -18,11 +18,10 @@ def _sources(stage, directory):
 
 def _copy(source, target, root):
     """Paths in JSON are written relative to the checkout."""
-    target.parent.mkdir(parents=True, exist_ok=True)
     if source.suffix == ".json":
-        target.write_text(source.read_text(encoding="utf-8").replace(f"{root}/", ""), encoding="utf-8")
+        write_text(target, source.read_text(encoding="utf-8").replace(f"{root}/", ""))
     else:
-        shutil.copyfile(source, target)
+        write_bytes(target, source.read_bytes())
 
 
 def publish(root, records):
@@ -46,5 +45,5 @@ def publish(root, records):
         for _, target in stage.files:
             if target.endswith("/"):
                 notes[target.rstrip("/")] = records[stage.name]
-    (results / "provenance.json").write_text(
-        json.dumps({"schema": "cleave-provenance-1", "files": notes}, indent=2) + "\n", encoding="utf-8")
+    text = json.dumps({"schema": "cleave-provenance-1", "files": notes}, indent=2)
+    write_text(results / "provenance.json", text + "\n")
