@@ -21,7 +21,8 @@ int simulate(const std::string& command, const std::vector<std::string>& argv, c
   }
   Simulation simulation(options, stop_requested(), std::move(observe));
   const std::filesystem::path out = create_output_directory(options.out);
-  if (options.force && !motion) std::filesystem::remove(out / "motion.h5");  // of the run that is overwritten
+  if (options.force)  // those of the run that is overwritten
+    for (const char* name : {"motion.h5", "motion.h5.part"}) std::filesystem::remove(out / name);
   return do_manifested_work(out, describe_work(command, argv, options, option_values(options)), [&] {
     CsvRecorder recorder(out / "steps.csv", csv_header());
     const auto write = [&recorder](std::span<const StepRecord> rows) { recorder.append(csv_lines(rows)); };

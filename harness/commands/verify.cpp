@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void verify_file(const fs::path& path, CheckList& list) {
-  check_problem_file(path, read_problem_file(path), list);
+  check_problem_file(path, read_problem_file_aloud(path), list);
 }
 
 void verify_directory(const fs::path& directory, CheckList& list) {
