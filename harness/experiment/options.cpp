@@ -221,12 +221,16 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
   return options;
 }
 
+bool changes_rows(const std::string& option) {
+  static const std::set<std::string> no_row = {"threads", "out", "force", "record-motion"};
+  return !no_row.contains(option);
+}
+
 std::vector<OptionValue> option_values(const RunOptions& options) {
-  const std::set<std::string> changes_no_row = {"threads", "out", "force", "record-motion"};
   std::vector<OptionValue> values;
   for (const OptionSpec& spec : run_option_specs())
     values.push_back(
-        {spec.name, spec.kind, spec.get(options), spec.about, !changes_no_row.contains(spec.name)});
+        {spec.name, spec.kind, spec.get(options), spec.about, changes_rows(spec.name)});
   for (const auto& [parameter, owners, about, in_replay] : common_parameters()) {
     const auto found = options.common.find(parameter.name);
     values.push_back({parameter.name, option_kind(parameter),

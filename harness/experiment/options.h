@@ -96,6 +96,9 @@ std::vector<OptionValue> option_values(const RunOptions& options);
 // Every algorithm that the run was asked for, in the order of its rows.
 std::vector<NamedAlgorithm> named_algorithms(const RunOptions& options);
 
+// Whether an option of the table can change a row: false for --out and its like.
+bool changes_rows(const std::string& option);
+
 // Fingerprint of all options but those of bookkeeping that change no row: 16 hexadecimal digits.
 std::string run_id(std::span<const OptionValue> values);
 inline std::string run_id(const RunOptions& options) { return run_id(option_values(options)); }

@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <stdexcept>
 
 #include "harness/base/numbers.h"
@@ -85,6 +86,12 @@ void write_problem_file(const fs::path& path, const ProblemFile& file) {
     fs::remove(temporary, ignored);
     throw;
   }
+}
+
+std::string problem_file_name(const std::string& scene, int step) {
+  char number[16];
+  std::snprintf(number, sizeof number, "%06d", step);
+  return scene + "_step" + number + ".h5";
 }
 
 }  // namespace cleave

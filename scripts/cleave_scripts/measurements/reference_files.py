@@ -1,4 +1,5 @@
 """Moves what the stages of scripts/reference made into results/, with a note of what made each file."""
+import hashlib
 import json
 import shutil
 
@@ -25,6 +26,14 @@ def _copy(source, target, root):
         shutil.copyfile(source, target)
 
 
+def _write_checksums(results):
+    """Of every stored run anew, for `cleave verify`: the paths in its manifest are others now."""
+    for manifest in sorted(results.rglob("manifest.json")):
+        files = [path for path in (manifest.parent / name for name in RUN_FILES) if path.is_file()]
+        lines = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in files]
+        (manifest.parent / "checksums").write_text("".join(lines), encoding="utf-8")
+
+
 def publish(root, records):
     """results/ holds then what the stages made, and of older results nothing."""
     out, results = root / "out" / "reference", root / "results"
@@ -46,5 +55,6 @@ def publish(root, records):
         for _, target in stage.files:
             if target.endswith("/"):
                 notes[target.rstrip("/")] = records[stage.name]
+    _write_checksums(results)
     (results / "provenance.json").write_text(
         json.dumps({"schema": "cleave-provenance-1", "files": notes}, indent=2) + "\n", encoding="utf-8")
