@@ -169,8 +169,8 @@ class Replay {
 int replay(const ReplayOptions& options, const std::vector<std::string>& argv) {
   if (options.files.empty()) throw std::invalid_argument("FILES: at least one problem file is required");
   for (const std::string& file : options.files) read_problem_file(file);  // before anything is created
-  check_not_taken_away(options);
   if (options.write_solutions) check_names(options);
+  check_not_taken_away(options);
   check_output_directory(options.solve.out, options.solve.force, files_written(options));
   print_left_out(options.solve);
   Replay work(options);
