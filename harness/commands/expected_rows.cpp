@@ -178,11 +178,12 @@ std::string row_key(const std::string& step_or_file, const std::string& partitio
 std::string run_id_of(const StoredManifest& manifest) {
   std::vector<OptionValue> values = manifest.options;
   for (OptionValue& value : values) {
+    value.in_run_id = value.name != "files";
     const auto of_table = std::ranges::find(run_option_specs(), value.name, &OptionSpec::name);
+    if (of_table == run_option_specs().end()) continue;
+    value.in_run_id = of_table->in_run_id;
     // A number of the table that was not given has this text.
-    if (value.text.empty() && of_table != run_option_specs().end() && of_table->kind == OptionKind::number)
-      value.text = "nan";
-    value.in_run_id = changes_rows(value.name) && value.name != "files";
+    if (value.text.empty() && of_table->kind == OptionKind::number) value.text = "nan";
   }
   return run_id(values);
 }

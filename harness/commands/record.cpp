@@ -28,7 +28,7 @@ void keep_one(const Given& given, const std::string& option, std::vector<Algorit
 
 // Only the solver of --advance runs: where it ignores parts, options about them would do nothing.
 void check_parts_wanted(const RepeatedOptions& all, const RunOptions& options) {
-  if (make_solver(options.advance, 1, StepContext{})->uses_partition()) return;
+  if (uses_parts(options.advance)) return;
   for (const char* option : {"partitioner", "refiner", "skip-small-islands"})
     if (all.given.contains(option) && !all.stored.contains(option))
       throw std::invalid_argument(std::string("--") + option + ": --advance " + options.advance.text +

@@ -35,11 +35,9 @@ struct ReplayOptions {
 
 // Everything about the step itself comes from the files.
 bool in_replay(const std::string& option) {
-  for (const OptionSpec& spec : run_option_specs())
-    if (spec.name == option) return spec.commands.replay;
-  for (const CommonParameter& common : common_parameters())
-    if (common.parameter.name == option) return common.in_replay;
-  return false;
+  if (const OptionSpec* spec = find_option(option)) return spec->commands.replay;
+  const CommonParameter* common = find_common_parameter(option);
+  return common != nullptr && common->in_replay;
 }
 
 std::vector<OptionValue> values_of(const ReplayOptions& options) {

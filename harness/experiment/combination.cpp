@@ -64,7 +64,7 @@ double median(const Items& items, Value value) {
 }
 
 template <class Repeats>
-void set_split(const StepProblem& problem, const Repeats& repeats, StepRecord& row) {
+void set_split(const Repeats& repeats, StepRecord& row) {
   const Split& split = *repeats.front().split;
   row.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
   row.set_partition(measure_partition(split.graph, split.parts.part_of_body));
@@ -88,10 +88,6 @@ void set_measures(const StepProblem& problem, const BodyGraph* graph, const Outc
                   StepRecord& row) {
   const Cell cell{problem, graph, outcome.part_of_body, outcome.solution, outcome.verdict};
   for (const CellMeasure& measure : cell_measures()) row.measures.push_back(measure.value(cell));
-}
-
-bool uses_parts(const Algorithm& solver, const StepContext& context) {
-  return make_solver(solver, 1, context)->uses_partition();
 }
 
 }  // namespace
@@ -170,7 +166,7 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   row.repeat_count = static_cast<int>(repeats.size());
   row.status = to_string(chosen.outcome.status);
   row.ode_messages += chosen.outcome.summary.engine_messages;
-  if (repeats.front().split) set_split(problem, repeats, row);
+  if (repeats.front().split) set_split(repeats, row);
   row.set_summary(chosen.outcome.summary);
   row.peak_memory_mb = peak_memory_mb();
   set_verdict(problem, chosen.outcome, row);
@@ -202,10 +198,9 @@ std::vector<Combination> make_combinations(const RunOptions& options, const Step
   for (const Algorithm& partitioner : options.partitioners)
     for (const Algorithm& refiner : options.refiners)
       for (const Algorithm& solver : options.solvers)
-        if (uses_parts(solver, context))
-          splitting.emplace_back(partitioner, refiner, solver, options, context);
+        if (uses_parts(solver)) splitting.emplace_back(partitioner, refiner, solver, options, context);
   for (const Algorithm& solver : options.solvers)
-    if (!uses_parts(solver, context)) whole.emplace_back(Algorithm{}, Algorithm{}, solver, options, context);
+    if (!uses_parts(solver)) whole.emplace_back(Algorithm{}, Algorithm{}, solver, options, context);
   std::ranges::move(whole, std::back_inserter(splitting));
   return splitting;
 }
