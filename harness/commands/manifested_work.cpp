@@ -6,6 +6,9 @@
 
 #include "harness/commands/command.h"
 #include "harness/experiment/step_record.h"
+#include "harness/files/checksums.h"
+#include "harness/files/directory_lock.h"
+#include "harness/files/output_directory.h"
 #include "harness/world/ode_world.h"
 
 namespace cleave {
@@ -39,23 +42,39 @@ int exit_code(const RunSummary& summary) {
 
 const std::atomic<bool>& stop_requested() { return stop; }
 
-int do_manifested_work(const std::filesystem::path& directory, const WorkDescription& description,
+int do_manifested_work(const RunOptions& options, const WorkDescription& description,
                        const std::function<RunSummary()>& work) {
+  const std::filesystem::path directory = create_output_directory(options.out);
+  const DirectoryLock lock(directory, "cleave " + description.command);
+  // Someone else may have finished there between the check and the lock.
+  check_files_absent(options.out, options.force, description.files);
+  if (options.force) remove_earlier_work(directory);
   stop_on_signals();
   RunSummary summary;
-  Manifest manifest(directory / "manifest.json", description);
+  Manifest manifest(directory / kManifestFile, description);
   manifest.around([&] {
     summary = work();
     return WorkResult{summary.interrupted, summary.counts()};
   });
+  std::vector<std::string> files = description.files;
+  files.push_back(kManifestFile);
+  write_checksums(directory, files);
   std::fprintf(stderr, "%s%s", summary.text().c_str(), summary.interrupted ? "interrupted\n" : "");
   return exit_code(summary);
 }
 
 WorkDescription describe_work(const std::string& command, const std::vector<std::string>& argv,
-                              const RunOptions& options, const std::vector<OptionValue>& values) {
-  return {
-      command, argv, run_id(values), values, named_algorithms(options), columns(), {{"ode", ode_version()}}};
+                              const RunOptions& options, const std::vector<OptionValue>& values,
+                              const std::vector<std::string>& files) {
+  return {.command = command,
+          .argv = argv,
+          .run_id = run_id(values),
+          .options = values,
+          .algorithms = named_algorithms(options),
+          .steps_schema = kStepsSchema,
+          .columns = columns(),
+          .files = files,
+          .libraries = {{"ode", ode_version()}}};
 }
 
 void print_left_out(const RunOptions& options) {

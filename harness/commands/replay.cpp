@@ -65,6 +65,17 @@ void check_names(const ReplayOptions& options) {
   }
 }
 
+// --force takes away what an earlier command left in --out; that must not be what is replayed.
+void check_not_taken_away(const ReplayOptions& options) {
+  std::error_code error;
+  for (const fs::path& earlier : files_of_earlier_work(options.solve.out))
+    for (const std::string& file : options.files)
+      if (fs::equivalent(file, earlier, error))
+        throw std::invalid_argument(
+            "--out: '" + options.solve.out + "' holds " + file +
+            ", which is replayed and would be overwritten with the rest; name another directory");
+}
+
 std::vector<std::string> files_written(const ReplayOptions& options) {
   std::vector<std::string> files = {"steps.csv"};
   if (!options.write_solutions) return files;
@@ -161,12 +172,13 @@ int replay(const ReplayOptions& options, const std::vector<std::string>& argv) {
   if (options.files.empty()) throw std::invalid_argument("FILES: at least one problem file is required");
   for (const std::string& file : options.files) read_problem_file_aloud(file);  // before anything is created
   if (options.write_solutions) check_names(options);
+  check_not_taken_away(options);
   check_output_directory(options.solve.out, options.solve.force, files_written(options));
   print_left_out(options.solve);
   Replay work(options);
-  const fs::path out = create_output_directory(options.solve.out);
-  return do_manifested_work(out, describe_work("replay", argv, options.solve, values_of(options)),
-                            [&] { return work.run(out); });
+  return do_manifested_work(
+      options.solve, describe_work("replay", argv, options.solve, values_of(options), files_written(options)),
+      [&] { return work.run(options.solve.out); });
 }
 
 // What is given beside --config wins; FILES do as a whole.

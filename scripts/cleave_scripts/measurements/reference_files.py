@@ -1,4 +1,5 @@
 """Moves what the stages of scripts/reference made into results/, with a note of what made each file."""
+import hashlib
 import json
 
 from cleave_scripts.measurements.reference_stages import RUN_FILES, STAGES
@@ -24,6 +25,14 @@ def _copy(source, target, root):
         write_bytes(target, source.read_bytes())
 
 
+def _write_checksums(results):
+    """Of every stored run anew, for `cleave verify`: the paths in its manifest are others now."""
+    for manifest in sorted(results.rglob("manifest.json")):
+        files = [path for path in (manifest.parent / name for name in RUN_FILES) if path.is_file()]
+        lines = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in files]
+        write_text(manifest.parent / "checksums", "".join(lines))
+
+
 def publish(root, records):
     """results/ holds then what the stages made, and of older results nothing."""
     out, results = root / "out" / "reference", root / "results"
@@ -45,5 +54,6 @@ def publish(root, records):
         for _, target in stage.files:
             if target.endswith("/"):
                 notes[target.rstrip("/")] = records[stage.name]
+    _write_checksums(results)
     text = json.dumps({"schema": "cleave-provenance-1", "files": notes}, indent=2)
     write_text(results / "provenance.json", text + "\n")
