@@ -1,7 +1,6 @@
 // cleave export: the body graph of a recorded problem as a file that other programs read.
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <span>
 #include <sstream>
@@ -13,6 +12,7 @@
 #include "harness/commands/command.h"
 #include "harness/experiment/problem_graph.h"
 #include "harness/files/problem_file.h"
+#include "harness/files/whole_file.h"
 
 namespace cleave {
 namespace {
@@ -48,21 +48,6 @@ constexpr ExportFormat kFormats[] = {
     {"metis", "graph file of METIS, edges weighed in constraint rows", metis_text}};
 
 // A file of this name is whole.
-void write_whole(const fs::path& path, const std::string& text) {
-  const fs::path temporary = path.string() + ".part";
-  std::error_code error;
-  {
-    std::ofstream file(temporary, std::ios::binary);
-    file << text << std::flush;
-    if (!file) {
-      fs::remove(temporary, error);
-      throw std::runtime_error(path.string() + ": cannot be written");
-    }
-  }
-  fs::rename(temporary, path, error);
-  if (error) throw std::runtime_error(path.string() + ": cannot be written: " + error.message());
-}
-
 int export_graph(const ExportOptions& options) {
   if (options.file.empty()) throw std::invalid_argument("FILE: a problem file is required");
   if (options.format.empty())
@@ -71,10 +56,10 @@ int export_graph(const ExportOptions& options) {
   if (options.out.empty()) throw std::invalid_argument("--out: is required: the file to write");
   if (fs::exists(options.out) && !options.force)
     throw std::invalid_argument("--out: " + options.out + " exists; name another file or give --force");
-  const ProblemFile file = read_problem_file(options.file);
+  const ProblemFile file = read_problem_file_aloud(options.file);
   const BodyGraph graph = body_graph_of(file.problem, file.step);
   for (const ExportFormat& format : kFormats)
-    if (options.format == format.name) write_whole(options.out, format.text(graph));
+    if (options.format == format.name) write_whole_file(options.out, format.text(graph));
   std::fprintf(stderr, "%s: %d bodies, %d edges\n", options.out.c_str(), graph.body_count(),
                graph.edge_count());
   return kExitOk;

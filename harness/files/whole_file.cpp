@@ -1,0 +1,90 @@
+#include "harness/files/whole_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+namespace cleave {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A descriptor that is closed whatever happens.
+class Descriptor {
+ public:
+  Descriptor(const fs::path& path, int flags) : value_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
+  ~Descriptor() {
+    if (value_ >= 0) ::close(value_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  bool is_open() const { return value_ >= 0; }
+  bool write(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(value_, bytes.data(), bytes.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+    return true;
+  }
+  // All bytes, as far as they can be read.
+  std::string read() const {
+    std::string bytes;
+    char block[4096];
+    ssize_t count;
+    while ((count = ::read(value_, block, sizeof block)) > 0)
+      bytes.append(block, static_cast<std::size_t>(count));
+    return bytes;
+  }
+  bool seek(std::size_t place) const { return ::lseek(value_, static_cast<off_t>(place), SEEK_SET) >= 0; }
+  // Pipes and some network disks cannot sync and say EINVAL; there is nothing more to ask of them.
+  bool sync() const { return ::fsync(value_) == 0 || errno == EINVAL; }
+
+ private:
+  int value_;
+};
+
+[[noreturn]] void fail(const fs::path& path, int reason) {
+  ::unlink(part_name_of(path).c_str());
+  throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(reason));
+}
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+}  // namespace
+
+fs::path part_name_of(const fs::path& path) { return path.string() + ".part"; }
+
+void publish_part_file(const fs::path& path) {
+  const fs::path part = part_name_of(path);
+  if (const Descriptor file(part, O_RDONLY); !file.is_open() || !file.sync()) fail(path, errno);
+  if (::rename(part.c_str(), path.c_str()) != 0) fail(path, errno);
+  if (const Descriptor folder(folder_of(path), O_RDONLY | O_DIRECTORY); folder.is_open() && !folder.sync())
+    fail(path, errno);
+}
+
+void write_whole_file(const fs::path& path, std::string_view bytes) {
+  {
+    const Descriptor file(part_name_of(path), O_WRONLY | O_CREAT | O_TRUNC);
+    if (!file.is_open() || !file.write(bytes)) fail(path, errno);
+  }
+  publish_part_file(path);
+}
+
+bool replace_in_place(const fs::path& path, std::string_view from, std::string_view to) {
+  assert(from.size() == to.size());
+  const Descriptor file(path, O_RDWR);
+  const std::size_t place = file.is_open() ? file.read().find(from) : std::string::npos;
+  return place != std::string::npos && file.seek(place) && file.write(to) && file.sync();
+}
+
+}  // namespace cleave
