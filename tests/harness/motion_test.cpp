@@ -279,10 +279,10 @@ void end_by(int signal, std::uintmax_t bytes, Ended& ended) {
                                       "--refiner", "fm", "--repeats", "1", "--steps", "1000000",
                                       "--record-motion", "--out", ended.directory / "out"});
   std::error_code error;
-  for (int waited = 0; waited < 3000; ++waited) {
+  for (int waited = 0; waited < 30000; ++waited) {
     const auto size = std::filesystem::file_size(ended.part(), error);
     if (!error && size >= bytes) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(bytes == 0 ? 0 : 10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   ::kill(process, signal);
   ended.exit_code = finish_cleave(process);
