@@ -52,11 +52,13 @@ const Parameter& sweeps() {
 }  // namespace parameters
 
 DirectOptions read_direct_options(const SolveOptions& options, const Settings& settings) {
-  DirectOptions read{options};
-  if (settings.has("max-iterations")) read.max_iterations = settings.integer("max-iterations");
-  if (settings.has("predictor-sweeps")) read.predictor_sweeps = settings.integer("predictor-sweeps");
-  if (settings.has("reuse-analysis")) read.reuse_analysis = settings.flag("reuse-analysis");
-  return read;
+  using namespace parameters;
+  std::map<std::string, std::string> values = settings.values();
+  for (const Parameter& parameter : {max_iterations(), predictor_sweeps(), reuse_analysis()})
+    values.emplace(parameter.name, default_of(parameter));
+  const Settings all(std::move(values));
+  return {options, all.integer(max_iterations().name), all.integer(predictor_sweeps().name),
+          all.flag(reuse_analysis().name)};
 }
 
 }  // namespace cleave

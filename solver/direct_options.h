@@ -8,13 +8,13 @@
 namespace cleave {
 
 struct DirectOptions : SolveOptions {
-  int max_iterations = 100;     // of every strategy that runs; a miss is a status, not a result
-  int predictor_sweeps = 40;    // Gauss-Seidel sweeps that pivot starts from
-  bool reuse_analysis = false;  // keep the symbolic analysis while parts stay and rows fit its pattern
+  int max_iterations;    // of every strategy that runs; a miss is a status, not a result
+  int predictor_sweeps;  // Gauss-Seidel sweeps that pivot starts from
+  bool reuse_analysis;   // keep the symbolic analysis while parts stay and rows fit its pattern
 };
 
-// Parameters that the settings do not have keep their defaults.
-DirectOptions read_direct_options(const SolveOptions& options, const Settings& settings);
+// Parameters that the settings do not have take their defaults.
+DirectOptions read_direct_options(const SolveOptions& options, const Settings& settings = {});
 
 namespace parameters {
 

@@ -1,18 +1,67 @@
-// Projected Gauss-Seidel sweeps over the rows in their natural order: the predictor of the active-set
-// strategies and the baseline `pgs`. One sweep visits every row once:
+// Projected Gauss-Seidel: the predictor of the active-set strategies, the baseline `pgs` and the prediction of friction
+// bounds. One sweep visits every row once, in natural order:
 //
-//     w_r = J_r v + C_r lambda_r - b_r,   lambda_r <- clamp(lambda_r - w_r / d_r, lo_r, hi_r),   v += M^-1
-//     J_r^T dlambda
+//     w_r = J_r v + C_r lambda_r - b_r,   lambda_r <- next(r, lambda_r, w_r),   v += M^-1 J_r^T dlambda
+//
+// with next = clamp(lambda_r - w_r / d_r, lo_r, hi_r) for fixed bounds.
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "solver/prepared_step.h"
+#include "solver/stop.h"
 
 namespace cleave {
 
 // Of a problem without turned boxes. impulse (m) and v = v0 + M^-1 J^T impulse (n, 6) are updated in place.
-void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double> impulse,
-                         std::span<double> v);
+// stop: as in SolveOptions, looked at before every sweep.
+void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double> impulse, std::span<double> v,
+                         const std::atomic<bool>* stop);
+
+// w_r summed in four lanes, which compilers turn into vector instructions. u (12): velocities of the row's two bodies.
+struct LaneSlack {
+  double operator()(const StepProblem& problem, int row, const double* u, double impulse) const {
+    const double* j = problem.jacobian.data() + 12 * row;
+    double sum[4] = {};
+    for (int c = 0; c < 12; c += 4) {
+      for (int k = 0; k < 4; ++k) sum[k] += j[c + k] * u[c + k];
+    }
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]) + problem.compliance[row] * impulse - problem.rhs[row];
+  }
+};
+
+// w_r summed term after term: the order that what goes into a problem is defined by, as problems are told by their bytes.
+struct OrderedSlack {
+  double operator()(const StepProblem& problem, int row, const double* u, double impulse) const {
+    const double* j = problem.jacobian.data() + 12 * row;
+    double w = problem.compliance[row] * impulse - problem.rhs[row];
+    for (int c = 0; c < 12; ++c) w += j[c] * u[c];
+    return w;
+  }
+};
+
+// One sweep with other bounds than fixed ones: next(row, impulse, w) is the new impulse of the row; it may look at the
+// impulses of other rows as they are by then.
+template <typename Slack, typename Next>
+void gauss_seidel_sweep(const PreparedStep& step, const Slack& slack, const Next& next,
+                        std::span<double> impulse, std::span<double> v) {
+  const StepProblem& problem = step.problem();
+  for (const RowGroup& g : step.groups()) {
+    // The velocities of the two bodies stay in registers over the rows of the pair.
+    double u[12] = {};
+    std::copy_n(v.data() + 6 * g.body_a, 6, u);
+    if (g.body_b >= 0) std::copy_n(v.data() + 6 * g.body_b, 6, u + 6);
+    for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
+      const double old = impulse[r];
+      impulse[r] = next(r, old, slack(problem, r, u, old));
+      const double change = impulse[r] - old;
+      const double* mj = step.mass_jacobian().data() + 12 * r;
+      for (int c = 0; c < 12; ++c) u[c] += mj[c] * change;
+    }
+    std::copy_n(u, 6, v.data() + 6 * g.body_a);
+    if (g.body_b >= 0) std::copy_n(u + 6, 6, v.data() + 6 * g.body_b);
+  }
+}
 
 }  // namespace cleave

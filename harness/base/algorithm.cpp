@@ -71,7 +71,7 @@ Algorithm read_algorithm(const std::string& option, const std::string& text,
     } else if (shared != common.end()) {
       values[parameter.name] = checked_value(parameter, "--" + parameter.name, shared->second);
     } else if (!parameter.default_value.empty()) {
-      values[parameter.name] = checked_value(parameter, parameter.name, parameter.default_value);
+      values[parameter.name] = default_of(parameter);
     } else {
       const std::string way = parameter.kind == Parameter::Kind::path ? "" : ", or --" + parameter.name;
       reject(option, name + " needs " + parameter.name + ": write " + name + "@" + parameter.name + "=" +
@@ -99,8 +99,7 @@ std::string fingerprint_of(const std::string& text) {
 Settings defaults_of(const AlgorithmEntry& entry) {
   std::map<std::string, std::string> values;
   for (const Parameter& parameter : entry.parameters)
-    if (!parameter.default_value.empty())
-      values[parameter.name] = checked_value(parameter, parameter.name, parameter.default_value);
+    if (!parameter.default_value.empty()) values[parameter.name] = default_of(parameter);
   return Settings(std::move(values));
 }
 

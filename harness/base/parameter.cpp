@@ -26,10 +26,14 @@ std::string checked_flag(const std::string& option, const std::string& text) {
 
 }  // namespace
 
-std::string column_of(const Parameter& parameter) {
-  std::string column = parameter.name;
-  std::ranges::replace(column, '-', '_');
-  return column;
+std::string column_of(std::string name) {
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+std::string default_of(const Parameter& parameter) {
+  return parameter.default_value.empty() ? ""
+                                         : checked_value(parameter, parameter.name, parameter.default_value);
 }
 
 std::string allowed_text(const Parameter& parameter) {

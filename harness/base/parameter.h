@@ -26,8 +26,11 @@ struct Parameter {
   std::string source = {};              // where it is described or its default was measured; may be empty
 };
 
-// "max_bodies": its column in steps.csv and its attribute in problem files.
-std::string column_of(const Parameter& parameter);
+// "max_bodies" of "max-bodies": its column in steps.csv and its attribute in problem files.
+std::string column_of(std::string name);
+
+// The default in its one form of writing; empty where there is none.
+std::string default_of(const Parameter& parameter);
 
 // What may be given: "[1, inf)", "pairs|constraints|rows", "true|false".
 std::string allowed_text(const Parameter& parameter);

@@ -15,7 +15,7 @@ void add_parameters(const std::string& option, const Algorithm& algorithm, const
                     std::vector<StoredParameter>& to) {
   for (const Parameter& parameter : parameters_of(option, algorithm.name)) {
     if (parameter.kind == Parameter::Kind::path) continue;
-    const StoredParameter plain{column_of(parameter), parameter.kind,
+    const StoredParameter plain{column_of(parameter.name), parameter.kind,
                                 algorithm.settings.text(parameter.name)};
     if (std::ranges::count(to, plain) > 0) continue;
     const bool taken = std::ranges::count(to, plain.name, &StoredParameter::name) > 0;
@@ -34,7 +34,7 @@ CommonValues stored_values(const StoredPartition& partition, const std::string& 
   CommonValues values;
   for (const Parameter& parameter : parameters_of(option, name)) {
     if (parameter.kind == Parameter::Kind::path) continue;
-    const std::string column = column_of(parameter);
+    const std::string column = column_of(parameter.name);
     const StoredParameter* own = find_stored(partition, prefix + column);
     const StoredParameter* stored = own != nullptr ? own : find_stored(partition, column);
     if (stored == nullptr)

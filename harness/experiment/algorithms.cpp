@@ -155,6 +155,12 @@ std::span<const CommonParameter> common_parameters() {
   return all;
 }
 
+const CommonParameter* find_common_parameter(const std::string& name) {
+  for (const CommonParameter& common : common_parameters())
+    if (common.parameter.name == name) return &common;
+  return nullptr;
+}
+
 std::vector<Parameter> parameters_of(const std::string& option, const std::string& name) {
   for (const AlgorithmKind& kind : algorithm_kinds()) {
     const bool asked = kind.option == option || (is_solver(option) && kind.option == std::string("solver"));
@@ -203,9 +209,12 @@ const SceneEntry& scene_row(const Algorithm& scene) {
   return *std::ranges::find_if(scenes(), [&](const SceneEntry& row) { return row.name == scene.name; });
 }
 
-std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, int threads, const StepContext& context) {
+std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, const SolveOptions& options,
+                                        const StepContext& context) {
   if (std::unique_ptr<StepSolver> ode = make_ode_baseline(solver, context)) return ode;
-  return make_step_solver(solver, {.threads = threads});
+  return make_step_solver(solver, options);
 }
+
+bool uses_parts(const Algorithm& solver) { return make_solver(solver, {}, StepContext{})->uses_partition(); }
 
 }  // namespace cleave

@@ -1,13 +1,13 @@
 #include "harness/experiment/friction.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <vector>
+
+#include "solver/gauss_seidel.h"
 
 namespace cleave {
 namespace {
@@ -30,9 +30,6 @@ const Parameter& friction_force_n() {
   return parameter;
 }
 
-using Block = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-
 bool follows_normal(const StepProblem& problem, int row) { return problem.friction_coefficient[row] > 0; }
 
 double coulomb_bound(const StepProblem& problem, int row, std::span<const double> impulse) {
@@ -44,79 +41,28 @@ void set_bound(StepProblem& problem, int row, double bound) {
   problem.lower[row] = -bound;
 }
 
-// Projected Gauss-Seidel in row order with the velocities kept up to date, as the prediction needs it: a few
-// sweeps whose friction bounds move with the normal impulses.
-class BoundPredictor {
- public:
-  explicit BoundPredictor(const StepProblem& problem)
-      : problem_(problem), velocity_(problem.free_velocity), impulse_(problem.row_count(), 0.0) {
-    response_.resize(problem.jacobian.size());
-    diagonal_ = problem.compliance;
-    std::vector<Block> inverse_mass(problem.body_count());
-    for (int i = 0; i < problem.body_count(); ++i)
-      inverse_mass[i] = Eigen::Map<const Block>(&problem.mass[36 * i]).llt().solve(Block::Identity());
-    for (int r = 0; r < problem.row_count(); ++r)
-      for (int side = 0; side < 2; ++side) {
-        const int body = problem.row_body[2 * r + side];
-        if (body < 0) continue;
-        const Eigen::Map<const Vector6> jacobian(&problem.jacobian[12 * r + 6 * side]);
-        Eigen::Map<Vector6> response(&response_[12 * r + 6 * side]);
-        response.noalias() = inverse_mass[body] * jacobian;
-        diagonal_[r] += jacobian.dot(response);
-      }
-  }
+double clamp_impulse(const StepProblem& problem, int row, double impulse, std::span<const double> others) {
+  if (!follows_normal(problem, row)) return std::clamp(impulse, problem.lower[row], problem.upper[row]);
+  const double bound = coulomb_bound(problem, row, others);
+  return std::clamp(impulse, -bound, bound);
+}
 
-  void start_warm() {
-    for (int r = 0; r < problem_.row_count(); ++r)
-      change_impulse(r, clamp_impulse(r, problem_.warm_impulse[r]));
-  }
-
-  void sweep() {
-    for (int r = 0; r < problem_.row_count(); ++r) {
-      if (diagonal_[r] <= 0) continue;  // a row that moves nothing
-      change_impulse(r, clamp_impulse(r, impulse_[r] - slack(r) / diagonal_[r]));
-    }
-  }
-
-  std::span<const double> impulse() const { return impulse_; }
-
- private:
-  double slack(int row) const {
-    double w = problem_.compliance[row] * impulse_[row] - problem_.rhs[row];
-    for (int side = 0; side < 2; ++side) {
-      const int body = problem_.row_body[2 * row + side];
-      if (body < 0) continue;
-      const double* jacobian = &problem_.jacobian[12 * row + 6 * side];
-      const double* velocity = &velocity_[6 * body];
-      for (int k = 0; k < 6; ++k) w += jacobian[k] * velocity[k];
-    }
-    return w;
-  }
-
-  double clamp_impulse(int row, double impulse) const {
-    if (!follows_normal(problem_, row)) return std::clamp(impulse, problem_.lower[row], problem_.upper[row]);
-    const double bound = coulomb_bound(problem_, row, impulse_);
-    return std::clamp(impulse, -bound, bound);
-  }
-
-  void change_impulse(int row, double impulse) {
-    const double change = impulse - impulse_[row];
-    impulse_[row] = impulse;
-    for (int side = 0; side < 2; ++side) {
-      const int body = problem_.row_body[2 * row + side];
-      if (body < 0) continue;
-      const double* response = &response_[12 * row + 6 * side];
-      double* velocity = &velocity_[6 * body];
-      for (int k = 0; k < 6; ++k) velocity[k] += response[k] * change;
-    }
-  }
-
-  const StepProblem& problem_;
-  std::vector<double> velocity_;  // (n, 6)
-  std::vector<double> impulse_;   // (m)
-  std::vector<double> response_;  // (m, 12) M^-1 J^T
-  std::vector<double> diagonal_;  // (m) of J M^-1 J^T + C
-};
+// The impulses after a few Gauss-Seidel sweeps in which friction bounds move with the normal impulses.
+std::vector<double> predicted_impulse(const StepProblem& problem) {
+  PreparedStep step;
+  step.prepare(problem);
+  std::vector<double> impulse(problem.row_count(), 0.0), velocity(problem.free_velocity);
+  const auto start_warm = [&](int r, double, double) {
+    return clamp_impulse(problem, r, problem.warm_impulse[r], impulse);
+  };
+  const auto relax = [&](int r, double old, double w) {
+    return clamp_impulse(problem, r, old - w / step.diagonal()[r], impulse);
+  };
+  gauss_seidel_sweep(step, OrderedSlack{}, start_warm, impulse, velocity);
+  for (int s = 0; s < kPredictionSweeps; ++s)
+    gauss_seidel_sweep(step, OrderedSlack{}, relax, impulse, velocity);
+  return impulse;
+}
 
 void set_coulomb_bounds(std::span<const double> impulse, StepProblem& problem) {
   for (int r = 0; r < problem.row_count(); ++r)
@@ -154,10 +100,7 @@ FrictionModel friction_model(const std::string& name) {
 }
 
 void predict_friction_bounds(StepProblem& problem) {
-  BoundPredictor predictor(problem);
-  predictor.start_warm();
-  for (int s = 0; s < kPredictionSweeps; ++s) predictor.sweep();
-  set_coulomb_bounds(predictor.impulse(), problem);
+  set_coulomb_bounds(predicted_impulse(problem), problem);
 }
 
 double bound_mismatch(const StepProblem& problem, std::span<const double> impulse) {

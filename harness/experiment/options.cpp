@@ -37,6 +37,7 @@ RunOptions options_with(const CommonValues& common) {
   options.refiners = read_list("refiner", "paper", common);
   options.solvers = read_list("solver", "schur", common);
   options.advance = read_named("advance", "exact", common);
+  options.friction = read_named("friction", "box", common);
   return options;
 }
 
@@ -61,16 +62,11 @@ void read_table(const Given& given, RunOptions& options) {
   }
 }
 
-bool is_common(const std::string& name) {
-  return std::ranges::any_of(common_parameters(),
-                             [&](const auto& row) { return row.parameter.name == name; });
-}
-
 // A scene's options, as far as they are not parameters of algorithms.
 Given scene_given(const CommonValues& common) {
   Given rest;
   for (const auto& [name, value] : common)
-    if (!is_common(name)) rest.emplace(name, value);
+    if (find_common_parameter(name) == nullptr) rest.emplace(name, value);
   return rest;
 }
 
@@ -78,23 +74,19 @@ void append(const std::vector<Algorithm>& more, std::vector<const Algorithm*>& t
   for (const Algorithm& algorithm : more) to.push_back(&algorithm);
 }
 
-bool works_on_parts(const Algorithm* solver) {
-  return make_solver(*solver, 1, StepContext{})->uses_partition();
-}
-
 // A value that nothing in the run reads would do nothing.
 void check_owned(const RunOptions& options, const std::set<std::string>& stored, bool with_world) {
   std::vector<const Algorithm*> all;
   append(options.solvers, all);
   if (with_world && options.mode == RunMode::lockstep) all.push_back(&options.advance);
-  if (std::ranges::any_of(all, works_on_parts)) {
+  if (std::ranges::any_of(all, [](const Algorithm* solver) { return uses_parts(*solver); })) {
     append(options.partitioners, all);
     append(options.refiners, all);
   }
   if (with_world) all.push_back(&options.friction);
   for (const auto& [name, value] : options.common) {
     const auto reads = [&](const Algorithm* algorithm) { return algorithm->settings.has(name); };
-    if (is_common(name) && !stored.contains(name) && std::ranges::none_of(all, reads))
+    if (find_common_parameter(name) != nullptr && !stored.contains(name) && std::ranges::none_of(all, reads))
       reject(name, "is a parameter of " + owners_of(name) + "; nothing in this run has it");
   }
 }
@@ -115,7 +107,6 @@ void read_stiffness(const Given& given, RunOptions& options) {
 
 // The friction model and its parameters as extraction takes them.
 void read_friction(RunOptions& options) {
-  if (options.friction.name.empty()) options.friction = read_named("friction", "box", options.common);
   const Settings& settings = options.friction.settings;
   options.extract.friction = friction_model(options.friction.name);
   if (settings.has("mu")) options.extract.mu = settings.number("mu");
@@ -148,11 +139,6 @@ void override_solvers(const Given& given, RunOptions& options) {
   options.solvers = read_list("solver", joined(changed, ","), options.common);
 }
 
-// In the one form of writing; empty where there is none.
-std::string default_value(const Parameter& parameter) {
-  return parameter.default_value.empty() ? "" : checked_value(parameter, "", parameter.default_value);
-}
-
 OptionKind option_kind(const Parameter& parameter) {
   switch (parameter.kind) {
     case Parameter::Kind::integer:
@@ -170,7 +156,7 @@ NamedAlgorithm named(const std::string& kind, const Algorithm& algorithm) {
   for (const Parameter& parameter : parameters_of(kind, algorithm.name)) {
     if (parameter.kind == Parameter::Kind::path) continue;
     named.parameters[parameter.name] = algorithm.settings.text(parameter.name);
-    named.defaults[parameter.name] = default_value(parameter);
+    named.defaults[parameter.name] = default_of(parameter);
   }
   if (kind != "solver") return named;
   const SolverHalves halves = solver_halves(algorithm.name);
@@ -222,15 +208,13 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
 }
 
 std::vector<OptionValue> option_values(const RunOptions& options) {
-  const std::set<std::string> changes_no_row = {"threads", "out", "force", "record-motion"};
   std::vector<OptionValue> values;
   for (const OptionSpec& spec : run_option_specs())
-    values.push_back(
-        {spec.name, spec.kind, spec.get(options), spec.about, !changes_no_row.contains(spec.name)});
+    values.push_back({spec.name, spec.kind, spec.get(options), spec.about, spec.in_run_id});
   for (const auto& [parameter, owners, about, in_replay] : common_parameters()) {
     const auto found = options.common.find(parameter.name);
     values.push_back({parameter.name, option_kind(parameter),
-                      found != options.common.end() ? found->second : default_value(parameter), about});
+                      found != options.common.end() ? found->second : default_of(parameter), about});
   }
   if (!options.scene.name.empty())
     for (const Parameter& parameter : scene_row(options.scene).parameters)

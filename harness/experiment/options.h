@@ -66,12 +66,14 @@ struct OptionSpec {
   std::string help;         // one line, with the unit
   About about;
   CommandSet commands;
+  bool in_run_id;  // false: changes no row, such as --out
   // Throws std::invalid_argument: "--mu: -1 is not in [0, inf)".
   std::function<void(RunOptions&, const std::string&)> set;
   std::function<std::string(const RunOptions&)> get;
 };
 
 std::span<const OptionSpec> run_option_specs();
+const OptionSpec* find_option(const std::string& name);  // nullptr: none
 
 // The paper's partitioners and refiners on its solver, and everything else as in RunOptions.
 RunOptions default_run_options();
@@ -96,7 +98,7 @@ std::vector<OptionValue> option_values(const RunOptions& options);
 // Every algorithm that the run was asked for, in the order of its rows.
 std::vector<NamedAlgorithm> named_algorithms(const RunOptions& options);
 
-// Fingerprint of all options but those of bookkeeping that change no row: 16 hexadecimal digits.
+// Fingerprint of all options but those that change no row: 16 hexadecimal digits.
 std::string run_id(std::span<const OptionValue> values);
 inline std::string run_id(const RunOptions& options) { return run_id(option_values(options)); }
 

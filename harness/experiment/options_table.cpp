@@ -26,7 +26,9 @@ struct Row {
   const char* name;
   About about;
   CommandSet commands;
+  bool in_run_id = true;
 };
+constexpr bool kChangesNoRow = false;
 
 // The member a row reads and writes: at(&RunOptions::extract, &ExtractOptions::h_s).
 template <class... Path>
@@ -37,8 +39,8 @@ auto at(Path... path) {
 OptionSpec spec(const Row& row, Kind kind, std::string placeholder, std::string help,
                 std::function<void(RunOptions&, const std::string&)> set,
                 std::function<std::string(const RunOptions&)> get) {
-  return {row.name,  kind,         std::move(placeholder), std::move(help),
-          row.about, row.commands, std::move(set),         std::move(get)};
+  return {row.name,     kind,          std::move(placeholder), std::move(help), row.about,
+          row.commands, row.in_run_id, std::move(set),         std::move(get)};
 }
 
 template <class Member>
@@ -150,13 +152,14 @@ std::vector<OptionSpec> experiment_options() {
               at(&RunOptions::skip)),
       integer({"repeats", kAbout, kEverywhere}, kAtLeastOne,
               "solves of every measured cell from the same warm start", at(&RunOptions::repeats)),
-      integer({"threads", kAbout, kEverywhere}, {1, 1024}, "threads of a solve", at(&RunOptions::threads)),
+      integer({"threads", kAbout, kEverywhere, kChangesNoRow}, {1, 1024}, "threads of a solve",
+              at(&RunOptions::threads)),
       seed(),
-      text({"out", kAbout, kEverywhere}, "DIR", "directory for steps.csv and manifest.json",
+      text({"out", kAbout, kEverywhere, kChangesNoRow}, "DIR", "directory for steps.csv and manifest.json",
            at(&RunOptions::out)),
-      flag({"force", kAbout, kEverywhere}, "overwrite the steps.csv that --out holds",
+      flag({"force", kAbout, kEverywhere, kChangesNoRow}, "overwrite the steps.csv that --out holds",
            at(&RunOptions::force)),
-      flag({"record-motion", kAbout, kRunOnly},
+      flag({"record-motion", kAbout, kRunOnly, kChangesNoRow},
            "write bodies, graph and parts of every step to motion.h5, for pictures and the viewer",
            at(&RunOptions::record_motion)),
   };
@@ -203,6 +206,11 @@ std::vector<OptionSpec> all_options() {
 std::span<const OptionSpec> run_option_specs() {
   static const std::vector<OptionSpec> specs = all_options();
   return specs;
+}
+
+const OptionSpec* find_option(const std::string& name) {
+  const auto found = std::ranges::find(run_option_specs(), name, &OptionSpec::name);
+  return found == run_option_specs().end() ? nullptr : &*found;
 }
 
 }  // namespace cleave

@@ -25,17 +25,6 @@ void drop(Given& stored, std::initializer_list<const char*> names) {
   for (const char* name : names) stored.erase(name);
 }
 
-const OptionSpec* find_spec(const std::string& name) {
-  const auto found = std::ranges::find(run_option_specs(), name, &OptionSpec::name);
-  return found == run_option_specs().end() ? nullptr : &*found;
-}
-
-const CommonParameter* find_common(const std::string& name) {
-  for (const CommonParameter& common : common_parameters())
-    if (common.parameter.name == name) return &common;
-  return nullptr;
-}
-
 std::vector<std::string> scene_parameters(const Given& stored) {
   const std::string scene = value_of(stored, "scene");
   if (scene.empty()) return {};
@@ -56,8 +45,7 @@ std::vector<std::string> scene_parameters(const Given& stored) {
 void check_can_be_found(const Given& taken) {
   for (const char* option : {"scene", "partitioner", "refiner", "solver"})
     for (const std::string& item : split_list(value_of(taken, option))) {
-      const std::size_t at = item.find('@');
-      if (at != std::string::npos && item.find('=', at) == std::string::npos)
+      if (!fingerprint_of(item).empty())
         throw std::invalid_argument("option " + std::string(option) + ": " + item +
                                     " is known by its content, not by its file; give --" + option +
                                     " beside --config");
@@ -68,11 +56,11 @@ void check_can_be_found(const Given& taken) {
 bool is_taken(const std::string& name, const std::string& value, bool CommandSet::*command,
               const std::vector<std::string>& own_and_scene) {
   const bool with_world = command != &CommandSet::replay;
-  if (const OptionSpec* spec = find_spec(name))
+  if (const OptionSpec* spec = find_option(name))
     return spec->commands.*command && name != "out" && name != "force" &&
            !(spec->kind == OptionKind::flag && value == "false");
   if (std::ranges::count(own_and_scene, name) > 0) return true;
-  if (const CommonParameter* common = find_common(name)) return with_world || common->in_replay;
+  if (const CommonParameter* common = find_common_parameter(name)) return with_world || common->in_replay;
   reject_unknown(name, own_and_scene);
 }
 
@@ -102,7 +90,7 @@ RepeatedOptions repeated_options(const Given& stored, const Given& given, bool C
     if (is_taken(name, value, command, own_and_scene)) taken.emplace(name, value);
   if (is_another_scene(given, taken))
     for (const std::string& name : of_scene)
-      if (find_common(name) == nullptr) taken.erase(name);
+      if (find_common_parameter(name) == nullptr) taken.erase(name);
   drop_replaced(given, taken);
 
   RepeatedOptions options{given, {}};

@@ -13,13 +13,6 @@
 namespace cleave {
 namespace {
 
-// As it stands on the command line and in the manifest.
-std::string option_text(const RunOptions& options, std::string_view name) {
-  for (const OptionSpec& spec : run_option_specs())
-    if (spec.name == name) return spec.get(options);
-  throw std::logic_error("no option of this name: " + std::string(name));
-}
-
 std::string joined_scene_options(const RunOptions& options) {
   std::vector<std::string> pairs;
   for (const Parameter& parameter : scene_row(options.scene).parameters)
@@ -60,7 +53,7 @@ StepRecord run_columns(const RunOptions& options) {
   row.add_parameters(options.friction.settings);
   set_physics(options, row);
   row.cold = 0;
-  row.mode = option_text(options, "mode");
+  row.mode = find_option("mode")->get(options);
   if (options.mode == RunMode::lockstep) row.advance = options.advance.text;
   row.steps = options.steps;
   row.scene_options = joined_scene_options(options);

@@ -36,7 +36,7 @@ std::span<const ParameterColumn> parameter_columns() {
     const std::set<std::string> early = {"max_bodies", "tau_mr", "tau_mix", "max_growth"};
     std::vector<ParameterColumn> all;
     for (const CommonParameter& common : common_parameters()) {
-      const std::string name = column_of(common.parameter);
+      const std::string name = column_of(common.parameter.name);
       all.push_back(
           {name, common.parameter.help + "; - where nothing has it", common.about, early.contains(name)});
     }
@@ -47,10 +47,8 @@ std::span<const ParameterColumn> parameter_columns() {
 
 void StepRecord::add_parameters(const Settings& settings) {
   for (const auto& [name, value] : settings.values()) {
-    std::string column = name;
-    std::ranges::replace(column, '-', '_');
     const std::string cell = value == "true" ? "1" : value == "false" ? "0" : value;
-    const auto [entry, is_new] = parameters.emplace(column, cell);
+    const auto [entry, is_new] = parameters.emplace(column_of(name), cell);
     if (!is_new && entry->second != cell) entry->second += ";" + cell;
   }
 }

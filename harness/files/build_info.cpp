@@ -101,8 +101,7 @@ std::array<double, 3> load_average() {
 
 MachineInfo machine_info() {
   MachineInfo info;
-  char host[256] = "";
-  info.host = ::gethostname(host, sizeof host - 1) == 0 ? host : "unknown";
+  info.host = host_name();
   info.cpu_model = cpu_model();
   info.cores = omp_get_num_procs();
   info.governor = governor();
@@ -112,6 +111,11 @@ MachineInfo machine_info() {
   info.dense_kernel = dense_kernel();
   info.dense_gflop_per_s = dense_gflop_per_s();
   return info;
+}
+
+std::string host_name() {
+  char host[256] = "";
+  return ::gethostname(host, sizeof host - 1) == 0 ? host : "unknown";
 }
 
 std::string utc_now() {

@@ -74,4 +74,7 @@ ProblemFile read_problem_file_aloud(const std::filesystem::path& path);
 // written.
 void write_problem_file(const std::filesystem::path& path, const ProblemFile& file);
 
+// "rock_pile_step000100.h5": what `record` calls the problem of a step.
+std::string problem_file_name(const std::string& scene, int step);
+
 }  // namespace cleave

@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <stdexcept>
 
 #include "harness/base/numbers.h"
@@ -82,6 +83,12 @@ void write_problem_file(const fs::path& path, const ProblemFile& file) {
   Hdf5Writer writer(path);
   write_contents(writer, file);
   writer.close();
+}
+
+std::string problem_file_name(const std::string& scene, int step) {
+  char number[16];
+  std::snprintf(number, sizeof number, "%06d", step);
+  return scene + "_step" + number + ".h5";
 }
 
 }  // namespace cleave

@@ -22,7 +22,7 @@ using Files = std::set<std::string>;
 const std::map<std::string, Files> kGivers = {
     {"ok", {"solver/step_solver.h", "harness/experiment/combination.h"}},
     {"not_converged",
-     {"solver/direct_solver.cpp", "solver/baselines/pgs.cpp", "harness/experiment/combination.cpp"}},
+     {"solver/direct_solver.cpp", "solver/baselines/iterative_baseline.cpp", "harness/experiment/combination.cpp"}},
     {"timeout", {}},  // reserved: a run has no limit of time yet
     {"out_of_memory", {"harness/experiment/combination.cpp"}},
     {"diverged", {"solver/direct_solver.cpp", "harness/experiment/combination.cpp"}},

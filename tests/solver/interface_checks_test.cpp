@@ -132,7 +132,7 @@ Claim run_strategy(const StrategyRow& strategy, Kernel& kernel, const StepProble
   clock.start();
   PreparedStep step;
   step.prepare(problem);
-  SolveState state(DirectOptions{}, clock);
+  SolveState state(read_direct_options({}), clock);
   SolveSummary summary;
   kernel.analyze(step, parts, state.tasks);
   const std::vector<double> cold(problem.row_count(), 0.0);

@@ -116,7 +116,7 @@ TEST_P(TurnedBoxTest, DirectionsSolveTheirOwnSystem) {
   clock.start();
   PreparedStep step;
   step.prepare(problem);
-  SolveState state(DirectOptions{}, clock);
+  SolveState state(read_direct_options({}), clock);
   SolveSummary summary;
   const auto row = std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return k.name; });
   const std::unique_ptr<Kernel> kernel = row->make(defaults_of(*row));
