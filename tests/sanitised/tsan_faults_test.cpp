@@ -12,17 +12,28 @@ namespace cleave {
 namespace {
 
 struct Shared {
-  std::atomic<int> started{0};
+  std::atomic<int> step{0};
   int sum = 0;
 };
 
-// Both tasks are under way before either adds. Relaxed order: nothing that the sanitiser could take for order.
-void add_unordered(void* context, int) {
-  Shared& shared = *static_cast<Shared*>(context);
-  shared.started.fetch_add(1, std::memory_order_relaxed);
-  while (shared.started.load(std::memory_order_relaxed) < 2) {
+void wait_for(const std::atomic<int>& step, int value) {
+  while (step.load(std::memory_order_relaxed) != value) {
   }
-  ++shared.sum;
+}
+
+// Both tasks are under way before either adds, and then one adds after the other: of two accesses at the same instant
+// the sanitiser may miss one. Relaxed order: nothing that it could take for order.
+void add_unordered(void* context, int index) {
+  Shared& shared = *static_cast<Shared*>(context);
+  if (index == 0) {
+    wait_for(shared.step, 1);
+    ++shared.sum;
+    shared.step.store(2, std::memory_order_relaxed);
+  } else {
+    shared.step.store(1, std::memory_order_relaxed);
+    wait_for(shared.step, 2);
+    ++shared.sum;
+  }
 }
 
 void race() {
