@@ -91,6 +91,16 @@ class SetupTest(StandInTest):
         self.assertEqual([word for word in install.split()[2:] if word[0] != "-"], ["cmake", "libode-dev"])
         self.assertEqual(build, ["cmake --preset asan", "cmake --build --preset asan"])
 
+    def test_packages_of_one_preset_are_installed_for_it_alone(self):
+        for preset in ("release", "asan"):
+            self.assertEqual(self.setup_script("--preset", preset).returncode, 0)
+        self.assertFalse([line for line in self.log() if line.startswith("apt-get")])
+        self.assertEqual(self.setup_script("--preset", "tsan").returncode, 0)
+        install = [line for line in self.log() if " install " in line]
+        self.assertEqual(len(install), 1)
+        self.assertEqual([word for word in install[0].split()[2:] if word[0] != "-"],
+                         ["clang", "libclang-rt-14-dev", "llvm-14", "libomp-14-dev"])
+
     def test_what_another_package_provides_is_there(self):
         self.install([name for name in self.packages if name not in ("npm", "cmake")] + ["node, npm, cmake (= 3)"])
         self.assertEqual(self.setup_script().returncode, 0)
