@@ -40,5 +40,6 @@ def _number(text):
 def _same(first, second):
     """As text, or as numbers."""
     one, other = _number(first), _number(second)
-    return first == second or one is not None and one == other or one is not None and other is not None and math.isnan(one) and \
-        math.isnan(other)
+    if one is None or other is None:
+        return first == second
+    return one == other or math.isnan(one) and math.isnan(other)

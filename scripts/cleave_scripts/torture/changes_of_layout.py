@@ -7,7 +7,8 @@ import numpy as np
 from cleave_scripts.torture.changes_of_values import ANY, REFUSED, rewrite
 from cleave_scripts.torture.foreign_file import FLOATS, GROUPS, INTEGERS, OPTIONAL, REQUIRED, REQUIRED_ATTRIBUTES
 
-HUGE = (2**31, 2**33, 2**40, 2**62)
+HUGE = (2**31, 2**33, 2**40, 2**55)
+CONTROL_TEXTS = (b"a\nb", b"a\x1b[31mb", b"a\x7fb", b"\xff\xfe", b"\r")
 TEXTS = ("a\nb", "a,b", 'a"b', "\x1b[31m", "a\x00b", "\x7f", "\u202e", "\u2028", "", " ", "-", "x" * 5000, "..", "/", "=1+1")
 PER_BODY_OR_ROW = tuple(name for name in REQUIRED if name not in ("friction_row", "friction_coefficient"))
 
@@ -67,10 +68,11 @@ def _wrong_type(file, dice):
 
 def _references(file, dice):
     name = _present(file, PER_BODY_OR_ROW, dice)
-    shape, kind = file[name].shape, dice.choice([h5py.ref_dtype, h5py.regionref_dtype, h5py.vlen_dtype(np.float64)])
+    shape, chosen = file[name].shape, dice.choice(["object", "region", "list"])
+    kinds = {"object": h5py.ref_dtype, "region": h5py.regionref_dtype, "list": h5py.vlen_dtype(np.float64)}
     del file[name]
-    data = file.create_dataset(name, shape, dtype=kind)
-    if kind == h5py.ref_dtype and data.size:
+    data = file.create_dataset(name, shape, dtype=kinds[chosen])
+    if chosen == "object" and data.size:
         data[(0,) * len(shape)] = file.ref
 
 
@@ -195,11 +197,11 @@ def _text(file, dice):
 
 
 def _control_text(file, dice):
-    file.attrs[dice.choice(["scene", "friction_model"])] = np.bytes_(dice.choice([b"a\nb", b"a\x1b[31mb", b"a\x7fb", b"\xff\xfe", b"\r"]))
+    file.attrs[dice.choice(["scene", "friction_model"])] = np.bytes_(dice.choice(CONTROL_TEXTS))
 
 
 def _wrong_schema(file, dice):
-    file.attrs["schema"] = dice.choice(["cleave-problem-2", "", "cleave-problem-1\n", "cleave-problem-11", "CLEAVE-PROBLEM-1"])
+    file.attrs["schema"] = dice.choice(["cleave-problem-2", "", "cleave-problem-1\n", "cleave-problem-11", "CLEAVE"])
 
 
 def _wrong_attribute(file, dice):

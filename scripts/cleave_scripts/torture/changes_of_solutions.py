@@ -48,7 +48,8 @@ def _cut_solution(file, dice):
 
 def _wrong_label(file, dice):
     group = _solution(file, dice)
-    file.move(group.name, "solution/" + dice.choice(["x", "a\nb", "mix+fm", "mix+fm+schur+schur", "++", "\x1b[31m", "x" * 3000]))
+    labels = ("x", "a\nb", "mix+fm", "mix+fm+schur+schur", "++", "\x1b[31m", "x" * 3000)
+    file.move(group.name, "solution/" + dice.choice(labels))
 
 
 def _no_attribute(file, dice):

@@ -1,4 +1,4 @@
-"""Edits of steps.csv: `verify` finds them; those that the checksums cannot tell, as they were written again, by what it recomputes."""
+"""Edits of steps.csv, which `verify` finds: by the checksums, or where those were written again by what it recomputes."""
 import csv
 import io
 import shutil

@@ -24,8 +24,8 @@ def trial(trial):
 
 def flip(trial, path):
     """Another byte, or another bit of one."""
-    content = bytearray(path.read_bytes())
-    place, mask = trial.random.randrange(len(content)), trial.random.choice([1 << trial.random.randrange(8), trial.random.randrange(1, 256)])
+    content, dice = bytearray(path.read_bytes()), trial.random
+    place, mask = dice.randrange(len(content)), dice.choice([1 << dice.randrange(8), dice.randrange(1, 256)])
     content[place] ^= mask
     path.write_bytes(content)
     trial.note(f"{path.name}: byte {place} ^ {mask:#04x}")

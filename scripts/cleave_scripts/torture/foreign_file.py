@@ -6,8 +6,8 @@ REQUIRED = ("mass", "free_velocity", "row_body", "jacobian", "rhs", "compliance"
 OPTIONAL = ("row_kind", "row_constraint", "contact_point", "warm_impulse", "position", "orientation", "body_group")
 REQUIRED_ATTRIBUTES = ("schema", "h_s")
 OPTIONAL_ATTRIBUTES = ("scene", "step", "seed", "friction_model", "erp", "cfm")
-FLOATS = ("mass", "free_velocity", "jacobian", "rhs", "compliance", "lower", "upper", "friction_coefficient", "contact_point",
-          "warm_impulse", "position", "orientation")
+FLOATS = ("mass", "free_velocity", "jacobian", "rhs", "compliance", "lower", "upper", "friction_coefficient",
+          "contact_point", "warm_impulse", "position", "orientation")
 INTEGERS = ("row_body", "friction_row", "row_kind", "row_constraint")
 PER_ROW = ("row_body", "jacobian", "rhs", "compliance", "lower", "upper", "friction_row", "friction_coefficient", "row_kind",
            "row_constraint", "contact_point", "warm_impulse")

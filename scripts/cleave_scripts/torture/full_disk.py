@@ -23,7 +23,8 @@ def missing():
 
 
 def _mount(place, size_kb):
-    subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size_kb}k", "tmpfs", str(place)], check=True, capture_output=True, text=True)
+    subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={size_kb}k", "tmpfs", str(place)], check=True, capture_output=True,
+                   text=True)
 
 
 def _unmount(place):

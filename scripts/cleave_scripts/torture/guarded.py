@@ -1,4 +1,4 @@
-"""Files that may be damaged are opened in a process of their own: a library that crashes or waits takes only that with it."""
+"""Files that may be damaged are opened in a process of their own: a library that crashes takes only that with it."""
 import multiprocessing
 
 FORK = multiprocessing.get_context("fork")

@@ -14,6 +14,8 @@ ARRAY_CHANGES = (*changes_of_values.CHANGES, *changes_of_layout.CHANGES, *change
 FILE_CHANGES = changes_of_solutions.FILE_CHANGES
 OURS = 0.2  # share of variants that keep what the program itself has put into the file
 TWICE = 0.25  # share of those that may be accepted which are changed once more
+COMBINATIONS = ("--partitioner", "mindp,mix", "--refiner", "none,fm", "--max-bodies", "3", "--solver",
+                "schur,pgs,interior-point:monolithic", "--repeats", "1")
 MEMORY_MB = 2048  # enough for any file here: who asks for more has believed a size
 VERIFY = {REFUSED: (BAD_INPUT, CHECK_FAILED), UNTRUE: (BAD_INPUT, CHECK_FAILED), ANY: (DONE, BAD_INPUT, CHECK_FAILED)}
 REPLAY = {REFUSED: (BAD_INPUT, ), UNTRUE: (DONE, BAD_INPUT, ROWS_FAILED), ANY: (DONE, BAD_INPUT, ROWS_FAILED)}
@@ -23,9 +25,8 @@ def trial(trial):
     path = trial.directory / "problem.h5"
     expected, name = make_variant(trial, path)
     verified = _run(trial, "verify", VERIFY[expected], name, "problem.h5")
-    replayed = _run(trial, "replay", REPLAY[expected], name, "problem.h5", "--partitioner", "mindp,mix", "--refiner", "none,fm",
-                    "--max-bodies", "3", "--solver", "schur,pgs,interior-point:monolithic", "--repeats", "1",
-                    "--write-solutions", "--out", "out")
+    replayed = _run(trial, "replay", REPLAY[expected], name, "problem.h5", *COMBINATIONS, "--write-solutions", "--out",
+                    "out")
     trial.count("refused" if BAD_INPUT in (verified.code, replayed.code) else "accepted")
     out = trial.directory / "out"
     if replayed.code in (DONE, ROWS_FAILED):

@@ -8,6 +8,7 @@ from cleave_scripts.torture.guarded import Unreadable, guarded
 from cleave_scripts.torture.rows import judge_rows
 
 MOST_FLIPS = 3
+COMBINATION = ("--partitioner", "mix", "--refiner", "fm", "--solver", "schur", "--repeats", "1")
 
 
 def trial(trial):
@@ -18,8 +19,8 @@ def trial(trial):
     for _ in range(trial.random.choice([1, 1, 1, MOST_FLIPS])):
         flip(trial, path)
     verified = trial.run("verify", "problem.h5", allowed=(DONE, BAD_INPUT, CHECK_FAILED))
-    replayed = trial.run("replay", "problem.h5", "--partitioner", "mix", "--refiner", "fm", "--solver", "schur", "--repeats", "1",
-                         "--write-solutions", "--out", "out", allowed=(DONE, BAD_INPUT, ROWS_FAILED))
+    replayed = trial.run("replay", "problem.h5", *COMBINATION, "--write-solutions", "--out", "out",
+                         allowed=(DONE, BAD_INPUT, ROWS_FAILED))
     changed = _is_changed(source, path)
     if verified.code in (BAD_INPUT, CHECK_FAILED):
         trial.count("noticed")

@@ -14,13 +14,14 @@ def trial(trial):
     every = trial.random.randrange(1, MOST_EVERY)
     steps = [every * (number + 1) - 1 for number in range(MEASURED)]
     # A world that stops before a step is reached leaves that step out, and the exit code says so.
-    recorded = trial.run("record", *world, "--at", ",".join(map(str, steps)), "--out", "recorded", allowed=(DONE, BAD_INPUT, ROWS_FAILED))
+    recorded = trial.run("record", *world, "--at", ",".join(map(str, steps)), "--out", "recorded",
+                         allowed=(DONE, BAD_INPUT, ROWS_FAILED))
     files = sorted((trial.directory / "recorded").glob("*.h5"))
     if recorded.code == BAD_INPUT or not files:
         trial.count("refused")
         return
-    replayed = trial.run("replay", *(f"recorded/{path.name}" for path in files), *combinations, "--write-solutions", "--out", "replayed",
-                         allowed=(DONE, BAD_INPUT, ROWS_FAILED))
+    replayed = trial.run("replay", *(f"recorded/{path.name}" for path in files), *combinations, "--write-solutions",
+                         "--out", "replayed", allowed=(DONE, BAD_INPUT, ROWS_FAILED))
     if replayed.code == BAD_INPUT:
         trial.count("refused")
         return
@@ -34,12 +35,15 @@ def _compare_with_run(trial, words):
     """A row of the run that has the impulses of a judged row is judged as that was."""
     if trial.run("run", *words, "--out", "run", allowed=(DONE, ROWS_FAILED)).code not in (DONE, ROWS_FAILED):
         return
-    replayed = {tuple(row[name] for name in KEY): row for row in read_rows(trial, trial.directory / "replayed" / "steps.csv")}
+    replayed = {_key(row): row for row in read_rows(trial, trial.directory / "replayed" / "steps.csv")}
     for row in read_rows(trial, trial.directory / "run" / "steps.csv"):
-        key = tuple(row[name] for name in KEY)
-        if key in replayed:
-            different = [name for name in SAME if row[name] != replayed[key][name]]
+        if other := replayed.get(_key(row)):
+            different = [(name, row[name], other[name]) for name in SAME if row[name] != other[name]]
             if different:
-                trial.find("run and replay differ", f"{key}: {[(name, row[name], replayed[key][name]) for name in different]}")
+                trial.find("run and replay differ", f"{_key(row)}: {different}")
             else:
                 trial.count("judged")
+
+
+def _key(row):
+    return tuple(row[name] for name in KEY)

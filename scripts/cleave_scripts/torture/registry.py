@@ -1,4 +1,4 @@
-"""The kinds of trials: a file and a row here each. `trial` makes one, `missing` says why none can be made on this machine."""
+"""The kinds of trials: a file and a row here each. `trial` makes one, `missing` says why none can be made here."""
 import dataclasses
 import typing
 
@@ -16,7 +16,8 @@ class Kind:
 
 
 KINDS = (
-    Kind("problem-files", "a problem file changed in structure or values, given to verify and replay", problem_files.trial, 3),
+    Kind("problem-files", "a problem file changed in structure or values, given to verify and replay", problem_files.trial,
+         3),
     Kind("problem-flips", "bytes or bits flipped in a problem file, given to verify and replay", problem_flips.trial),
     Kind("flips", "a byte or bit flipped in any file of an output directory, which verify names", flips.trial),
     Kind("edits", "an edit of steps.csv, also with the checksums written again, which verify finds", edits.trial),

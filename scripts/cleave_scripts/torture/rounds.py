@@ -3,6 +3,7 @@ import pathlib
 import shutil
 import tempfile
 import time
+import traceback
 
 from cleave_scripts.torture.material import Material
 from cleave_scripts.torture.trial import Trial
@@ -54,7 +55,10 @@ class Rounds:
         directory = scratch / f"{kind.name}-{number}"
         directory.mkdir()
         trial, begin = Trial(kind.name, self.options.seed, number, directory, self), time.monotonic()
-        kind.trial(trial)
+        try:
+            kind.trial(trial)
+        except Exception as error:  # a fault of the trial must be seen, and must not end the others
+            trial.find(f"the trial itself fails: {type(error).__name__}", traceback.format_exc())
         self.tally.add(kind.name, trial, time.monotonic() - begin)
         if trial.findings:
             self.keeper.keep(trial, self.say)

@@ -4,7 +4,7 @@ import math
 
 
 def judge_rows(trial, out, problems):
-    """Every row of out/steps.csv whose solution was written, for the problems {name: path as it was given to the program}."""
+    """Every row of out/steps.csv whose solution was written; problems: {name: path as it was given to the program}."""
     rows = read_rows(trial, out / "steps.csv")
     for name, problem in problems.items():
         of_file = [row for row in rows if row["problem_file"].rpartition("/")[2] == name]

@@ -39,9 +39,12 @@ def world(dice):
     """Words that say what is simulated."""
     scene = dice.choice(sorted(SCENES))
     words = ["--scene", scene, *SCENES[scene](dice), "--seed", dice.randrange(1, 10**6)]
-    for option, value in (("--dt", _power(dice, -4, -1)), ("--cfm", dice.choice([_power(dice, -14, -3), _power(dice, -14, -3), "0"])),
-                          ("--erp", round(dice.random(), 3)), ("--gravity", round(dice.uniform(-20, 40), 3)),
-                          ("--contact-cap", dice.randrange(1, 17)), ("--match-tolerance", _power(dice, -3, 1))):
+    for option, value in (("--dt", _power(dice, -4, -1)),
+                          ("--cfm", dice.choice([_power(dice, -14, -3), _power(dice, -14, -3), "0"])),
+                          ("--erp", round(dice.random(), 3)),
+                          ("--gravity", round(dice.uniform(-20, 40), 3)),
+                          ("--contact-cap", dice.randrange(1, 17)),
+                          ("--match-tolerance", _power(dice, -3, 1))):
         if dice.random() < 0.4:
             words += [option, value]
     return words + _friction(dice)

@@ -40,5 +40,5 @@ class Tally:
 
     def in_words(self):
         kinds = ", ".join(f"{kind} {counts['trials']}" for kind, counts in self.counts.items())
-        return (f"{self.total('trials')} trials ({kinds}), {self.total('judged')} rows judged, {self.total('above')} above the "
-                f"limit, {self.total('findings')} findings")
+        return (f"{self.total('trials')} trials ({kinds}), {self.total('judged')} rows judged, {self.total('above')} above "
+                f"the limit, {self.total('findings')} findings")

@@ -20,8 +20,7 @@ class Finding:
 
 
 class Trial:
-    """kind, seed and number decide all that is random; every program runs in `directory`, so that its command can be repeated
-    there."""
+    """kind, seed and number decide all that is random. Programs run in `directory`: their commands can be repeated there."""
 
     def __init__(self, kind, seed, number, directory, tools):
         self.kind, self.seed, self.number, self.directory = kind, seed, number, directory
