@@ -1,5 +1,6 @@
 """Files that may be damaged are opened in a process of their own: a library that crashes takes only that with it."""
 import multiprocessing
+import signal
 
 FORK = multiprocessing.get_context("fork")
 SECONDS = 60
@@ -31,6 +32,7 @@ def guarded(function, *arguments, seconds=SECONDS):
 
 
 def _answer(pipe, function, arguments):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal, which sends it to all
     try:
         answer = True, function(*arguments)
     except Exception as error:  # whatever a library makes of a damaged file

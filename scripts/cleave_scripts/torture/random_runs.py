@@ -11,24 +11,25 @@ SAME = ("problem_hash", "solution_hash", "status", "residual_m_per_s")
 
 def trial(trial):
     world, combinations = scene_dice.world(trial.random), scene_dice.combinations(trial.random)
+    shared = scene_dice.advance(trial.random)
     every = trial.random.randrange(1, MOST_EVERY)
     steps = [every * (number + 1) - 1 for number in range(MEASURED)]
     # A world that stops before a step is reached leaves that step out, and the exit code says so.
-    recorded = trial.run("record", *world, "--at", ",".join(map(str, steps)), "--out", "recorded",
+    recorded = trial.run("record", *world, *shared, "--at", ",".join(map(str, steps)), "--out", "recorded",
                          allowed=(DONE, BAD_INPUT, ROWS_FAILED))
     files = sorted((trial.directory / "recorded").glob("*.h5"))
     if recorded.code == BAD_INPUT or not files:
         trial.count("refused")
         return
-    replayed = trial.run("replay", *(f"recorded/{path.name}" for path in files), *combinations, "--write-solutions",
-                         "--out", "replayed", allowed=(DONE, BAD_INPUT, ROWS_FAILED))
+    replayed = trial.run("replay", *(f"recorded/{path.name}" for path in files), *combinations, *shared,
+                         "--write-solutions", "--out", "replayed", allowed=(DONE, BAD_INPUT, ROWS_FAILED))
     if replayed.code == BAD_INPUT:
         trial.count("refused")
         return
     trial.count("accepted")
     judge_rows(trial, trial.directory / "replayed", {path.name: path for path in files})
     trial.run("verify", "recorded", "replayed", allowed=(DONE, ))
-    _compare_with_run(trial, [*world, *combinations, "--steps", steps[-1] + 1, "--measure-every", every])
+    _compare_with_run(trial, [*world, *combinations, *shared, "--steps", steps[-1] + 1, "--measure-every", every])
 
 
 def _compare_with_run(trial, words):

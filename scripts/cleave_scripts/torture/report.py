@@ -10,6 +10,14 @@ ABOUT = {kind.name: kind.about for kind in KINDS}
 TABLE = ("trials", "programs", "judged", "above", "kills", "restarts", "findings")
 
 
+def write(out, tally, frame):
+    """Also while trials are being made, so that whoever is killed leaves the counts of then."""
+    for name, text in (("torture.json", as_json(tally, frame)), ("torture.md", as_page(tally, frame))):
+        aside = out / f"{name}.part"
+        aside.write_text(text, encoding="utf-8")
+        aside.replace(out / name)
+
+
 def as_json(tally, frame):
     """frame: command, program, seed, time, ... in the order in which they are told."""
     kinds = {name: {**{count: counts[count] for count in COUNTS}, "seconds": round(tally.seconds[name], 1),

@@ -14,9 +14,9 @@ EVERY_S = 30  # a line of progress
 class Rounds:
     """Kinds take turns so that each has its share of the time. program, material and patience are what trials work with."""
 
-    def __init__(self, program, kinds, options, keeper, tally, say):
+    def __init__(self, program, kinds, options, keeper, tally, tell):
         self.program, self.patience = program, options.patience
-        self.kinds, self.options, self.keeper, self.tally, self.say = kinds, options, keeper, tally, say
+        self.kinds, self.options, self.keeper, self.tally, self.tell = kinds, options, keeper, tally, tell
         self.material = None
         self.begin = self.told = time.monotonic()
 
@@ -37,7 +37,7 @@ class Rounds:
             why = kind.missing()
             if why:
                 self.tally.not_run[kind.name] = why
-                self.say(f"NOT RUN: {kind.name}: {why}")
+                self.tell(f"NOT RUN: {kind.name}: {why}")
             else:
                 yield kind
 
@@ -61,7 +61,7 @@ class Rounds:
             trial.find(f"the trial itself fails: {type(error).__name__}", traceback.format_exc())
         self.tally.add(kind.name, trial, time.monotonic() - begin)
         if trial.findings:
-            self.keeper.keep(trial, self.say)
+            self.keeper.keep(trial, self.tell)
         shutil.rmtree(directory)
 
     def _seconds(self):
@@ -72,4 +72,4 @@ class Rounds:
             self.told = time.monotonic()
             minutes = self._seconds() / 60
             left = max(0, self.options.minutes - minutes)
-            self.say(f"{minutes:.1f} min, at most {left:.1f} left: {self.tally.in_words()}")
+            self.tell(f"{minutes:.1f} min, at most {left:.1f} left: {self.tally.in_words()}")

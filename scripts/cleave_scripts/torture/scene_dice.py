@@ -71,4 +71,9 @@ def combinations(dice):
              "--refiner", ",".join(dice.sample(REFINERS, dice.choice([1, 3]))),
              "--solver", ",".join([*dice.sample(NAMED, dice.choice([1, 2])), *dice.sample(pairs, dice.choice([0, 1, 3]))]),
              "--max-bodies", dice.choice([1, 2, 3, 8, 25]), "--threads", dice.choice([1, 2]), "--repeats", 1]
-    return words + ([] if dice.random() < 0.8 else [dice.choice(["--skip-small-islands", "--reuse-analysis"])])
+    return words + (["--skip-small-islands"] if dice.random() < 0.1 else [])
+
+
+def advance(dice):
+    """Parameters that also the solver has which moves the world: whoever shall make the same step needs the same."""
+    return ["--reuse-analysis"] if dice.random() < 0.1 else []
