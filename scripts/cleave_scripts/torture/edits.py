@@ -6,7 +6,7 @@ import shutil
 from cleave_scripts.torture.cell_edits import changed_cell
 from cleave_scripts.torture.directories import rewrite_checksums
 from cleave_scripts.torture.endings import BAD_INPUT, CHECK_FAILED
-from cleave_scripts.torture.recomputable import recomputable_columns
+from cleave_scripts.torture.recomputable import is_recomputable, least_change
 
 
 def _row_removed(dice, rows):
@@ -92,47 +92,52 @@ def trial(trial):
     directory = trial.directory / "out"
     shutil.copytree(trial.material.undisturbed[command].directory, directory)
     edit = trial.random.choice([*STRUCTURE, *TEXTS, *[CELL] * 20])
-    what, where = _apply(trial.random, edit, directory / "steps.csv")
+    can_be_found, what, where = _apply(trial.random, command, edit, directory / "steps.csv")
     rewritten = trial.random.random() < 0.75 and rewrite_checksums(directory)
     trial.note(f"steps.csv of {command}: {edit}, {where}" + (", checksums written again" if rewritten else ""))
     ending = trial.finish(trial.start("verify", "out"))
     if ending.code == 0:
-        if rewritten and edit == CELL and what not in recomputable_columns(command):
+        if rewritten and not can_be_found:
             trial.count("unlisted")
         else:
-            trial.find(f"verify: believes {edit}{f' ({what})' if what else ''} in steps.csv of {command}", where)
+            trial.find(f"verify: believes {what} in steps.csv of {command}", where)
     elif trial.check(ending, "verify", (BAD_INPUT, CHECK_FAILED)):
-        _check_named(trial, ending, edit, where)
+        _check_named(trial, ending, edit, rewritten, where)
 
 
-def _apply(dice, edit, path):
-    """(the column where it is one cell, where in words)"""
+def _apply(dice, command, edit, path):
+    """(whether it can be found without checksums, what, where), the last two in words"""
     text = path.read_text(encoding="utf-8")
     if edit in TEXTS:
         path.write_text(TEXTS[edit](dice, text), encoding="utf-8", newline="")
-        return None, "the file"
+        return True, edit, "the file"
     rows = list(csv.reader(io.StringIO(text)))
-    what, where = None, "the table"
+    told = True, edit, "the table"
     if edit == CELL:
-        line, place = dice.randrange(1, len(rows)), dice.randrange(len(rows[0]))
-        old, what = rows[line][place], rows[0][place]
-        rows[line][place] = changed_cell(dice, old)
-        where = f"line {line + 1}, {what} was '{old}', is '{rows[line][place]}'"
+        told = _change_cell(dice, command, rows)
     else:
         STRUCTURE[edit](dice, rows)
     written = io.StringIO()
     csv.writer(written, lineterminator="\n").writerows(rows)
     path.write_text(written.getvalue(), encoding="utf-8", newline="")
-    return what, where
+    return told
 
 
-def _check_named(trial, ending, edit, where):
-    """The file at least; of a cell whose file is not told by its checksum also the line."""
+def _change_cell(dice, command, rows):
+    line, place = dice.randrange(1, len(rows)), dice.randrange(len(rows[0]))
+    row, column, old = dict(zip(rows[0], rows[line])), rows[0][place], rows[line][place]
+    rows[line][place] = changed_cell(dice, old, least_change(column, row))
+    where = f"line {line + 1}, {column} was '{old}', is '{rows[line][place]}'"
+    return is_recomputable(command, column, row), f"{CELL} ({column})", where
+
+
+def _check_named(trial, ending, edit, rewritten, where):
+    """The file at least; of a cell that no checksum tells also the line."""
     told = ending.out + ending.err
     line = where.partition(",")[0]
     if "steps.csv" not in told:
         trial.find("verify: does not name steps.csv", told)
-    elif edit == CELL and "checksums" not in told and line not in told:
+    elif edit == CELL and rewritten and line not in told:
         trial.find("verify: does not name the row that was changed", f"{where}\n{told}")
     else:
         trial.count("noticed")

@@ -19,7 +19,7 @@ COMBINATIONS = ("--partitioner", "mindp,mix", "--refiner", "none,fm", "--solver"
                 "--repeats", "1")
 RUN = ("run", "--scene", "rock_pile", "--bodies", "20", "--steps", "80", "--measure-every", "8", "--refiner", "all",
        "--repeats", "1")
-RECORD = ("record", "--scene", "rock_pile", "--bodies", "30", "--at", "10,40,60,80,100,120")
+RECORD = ("record", "--scene", "rock_pile", "--bodies", "30", "--at", "10,40,60,80,100,120", "--repeats", "1")
 
 
 @dataclasses.dataclass(frozen=True)

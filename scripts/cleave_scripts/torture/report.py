@@ -3,6 +3,7 @@ import json
 import os
 import platform
 
+from cleave_scripts.results.whole_file import write_text
 from cleave_scripts.torture.registry import KINDS
 from cleave_scripts.torture.tally import COUNTS
 
@@ -12,10 +13,8 @@ TABLE = ("trials", "programs", "judged", "above", "kills", "restarts", "findings
 
 def write(out, tally, frame):
     """Also while trials are being made, so that whoever is killed leaves the counts of then."""
-    for name, text in (("torture.json", as_json(tally, frame)), ("torture.md", as_page(tally, frame))):
-        aside = out / f"{name}.part"
-        aside.write_text(text, encoding="utf-8")
-        aside.replace(out / name)
+    write_text(out / "torture.json", as_json(tally, frame))
+    write_text(out / "torture.md", as_page(tally, frame))
 
 
 def as_json(tally, frame):
