@@ -95,7 +95,8 @@ class ReferenceTest(unittest.TestCase):
         self.assertEqual([call.split()[0] for call in calls], [stage.command[0] for stage in STAGES] + ["readme_tables"])
         self.assertIn("[1/15] matrix, about 20 min: scripts/reproduce --measure-every 10 --out out/reference/report", said)
         self.assertEqual(self.results(), {
-            "README.md", "torture/torture.json", "provenance.json", "extremes.csv", "solver_benchmark.json", "partition_benchmark.json",
+            "README.md", "torture/torture.json", "provenance.json", "extremes.csv", "solver_benchmark.json",
+            "partition_benchmark.json",
             "dense_benchmark.json", "busy_machine.csv",
             "two_threads.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
             "report/verdicts.csv", *(f"report/scaling/bodies_50/{file}" for file in
