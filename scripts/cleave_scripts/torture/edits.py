@@ -102,7 +102,7 @@ def trial(trial):
         else:
             trial.find(f"verify: believes {what} in steps.csv of {command}", where)
     elif trial.check(ending, "verify", (BAD_INPUT, CHECK_FAILED)):
-        _check_named(trial, ending, edit, rewritten, where)
+        _check_named(trial, ending, edit == CELL and rewritten and can_be_found, where)
 
 
 def _apply(dice, command, edit, path):
@@ -131,13 +131,13 @@ def _change_cell(dice, command, rows):
     return is_recomputable(command, column, row), f"{CELL} ({column})", where
 
 
-def _check_named(trial, ending, edit, rewritten, where):
-    """The file at least; of a cell that no checksum tells also the line."""
+def _check_named(trial, ending, by_line, where):
+    """The file at least; of a cell that is recomputed also the line."""
     told = ending.out + ending.err
     line = where.partition(",")[0]
     if "steps.csv" not in told:
         trial.find("verify: does not name steps.csv", told)
-    elif edit == CELL and rewritten and line not in told:
+    elif by_line and line not in told:
         trial.find("verify: does not name the row that was changed", f"{where}\n{told}")
     else:
         trial.count("noticed")

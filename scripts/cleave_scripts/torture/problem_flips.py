@@ -1,10 +1,10 @@
-"""A byte or bit changed in a problem file on its own: found, or nothing that is read has changed."""
+"""A byte or bit changed in a problem file on its own: found, or the file says what it said before."""
 import shutil
 
-from cleave_scripts.torture.directories import read_everything
 from cleave_scripts.torture.endings import BAD_INPUT, CHECK_FAILED, DONE, ROWS_FAILED
 from cleave_scripts.torture.flips import flip
 from cleave_scripts.torture.guarded import Unreadable, guarded
+from cleave_scripts.torture.meaning import meaning
 from cleave_scripts.torture.rows import judge_rows
 
 MOST_FLIPS = 3
@@ -30,14 +30,14 @@ def trial(trial):
         trial.count("harmless")
     if replayed.code in (DONE, ROWS_FAILED):
         judge_rows(trial, trial.directory / "out", {"problem.h5": path})
-        if changed and _is_changed(source, path, ("solution", "partition")):
+        if changed and _is_changed(source, path, ("solution", "partition")):  # which replay writes anew
             trial.find(f"replay: believes a problem file {changed}")
 
 
 def _is_changed(source, path, but=()):
-    """In words; None where everything in it is as it was, but for what stands in some groups."""
+    """In words; None where it says what it said, but for what stands in some groups."""
     def told(file):
-        return {name: value for name, value in guarded(read_everything, file).items() if not name.startswith(but)}
+        return {name: value for name, value in guarded(meaning, file).items() if not name.startswith(but)}
 
     try:
         return None if told(path) == told(source) else "that is changed"
