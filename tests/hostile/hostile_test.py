@@ -21,7 +21,7 @@ from cleave_scripts.torture.registry import KINDS  # noqa: E402
 PROGRAM = os.environ["CLEAVE_PROGRAM"]
 MISBEHAVING = pathlib.Path(__file__).resolve().parent / "misbehaving"
 QUICK = {"problem-files": 60, "problem-flips": 15, "flips": 15, "edits": 15, "kills": 5, "interrupts": 3, "two-processes": 3,
-         "full-disk": 4, "low-memory": 6, "random-runs": 6}
+         "full-disk": 4, "low-memory": 6, "streams": 6, "command-lines": 30, "random-runs": 6}
 A_LONG_RUN = 51  # a seed whose first interrupt comes when the program has long begun
 LOST = "crashes with SIGSEGV", "crashes with SIGABRT"
 
@@ -82,6 +82,13 @@ class MisbehavingTest(TortureCase):
 
     def test_hangs(self):
         self.check("hang", dict.fromkeys(("problem-files", "low-memory", "random-runs"), "hangs"), "--patience", 1, count=1)
+
+    def test_streams(self):
+        self.check("ignore_full_output", {"streams": "loses what it prints"}, count=12)
+        self.check("write_to_what_is_open", {"streams": "leaves a broken file"}, count=12)
+
+    def test_files_of_refused_commands(self):
+        self.check("litter", {"command-lines": "leaves files", "problem-files": "refuses and writes"}, count=12)
 
     def test_error_lines(self):
         for misbehaviour, words in (("two_lines", "several error lines"), ("control_line", "control characters"),

@@ -24,13 +24,17 @@ class Ending:
         return self.err.splitlines()
 
 
-def limited(command, memory_mb):
-    """The command with so much address space. The shell sets the limit, so that it holds for nobody but the program."""
-    return ["/bin/sh", "-c", 'ulimit -v "$0" && exec "$@"', str(memory_mb * 1024), *command] if memory_mb else list(command)
+def in_shell(command, memory_mb, streams):
+    """The command with so much address space and such redirections, which hold for nobody but the program."""
+    if not memory_mb and not streams:
+        return command
+    return ["/bin/sh", "-c", f'ulimit -v "$0" && exec "$@" {streams}', str(memory_mb * 1024 if memory_mb else "unlimited"),
+            *command]
 
 
-def start(command, directory, memory_mb=None):
-    return subprocess.Popen(limited(list(map(str, command)), memory_mb), cwd=directory, stdin=subprocess.DEVNULL,
+def start(command, directory, memory_mb=None, streams=""):
+    """streams: redirections as the shell writes them, such as 2>&-"""
+    return subprocess.Popen(in_shell(list(map(str, command)), memory_mb, streams), cwd=directory, stdin=subprocess.DEVNULL,
                             stdout=subprocess.PIPE, stderr=subprocess.PIPE, process_group=0, preexec_fn=_be_modest)
 
 

@@ -1,4 +1,5 @@
 """Variants of problem files, each given to `verify` and to `replay`: refused in one line, or accepted and judged."""
+import dataclasses
 import shutil
 
 import h5py
@@ -70,5 +71,6 @@ def _run(trial, command, allowed, change, *words):
     ending = trial.run(command, *words, allowed=allowed, memory_mb=MEMORY_MB)
     if ending.code == BAD_INPUT and "memory" in ending.err:
         trial.find(f"{command}: believes a size")
-    trial.findings[before:] = [type(found)(f"{found.what}: {change}", found.detail) for found in trial.findings[before:]]
+    trial.findings[before:] = [dataclasses.replace(found, what=f"{found.what}: {change}")
+                               for found in trial.findings[before:]]
     return ending

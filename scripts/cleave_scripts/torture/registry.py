@@ -2,8 +2,8 @@
 import dataclasses
 import typing
 
-from cleave_scripts.torture import (edits, flips, full_disk, interrupts, kills, low_memory, problem_files, problem_flips,
-                                    random_runs, two_processes)
+from cleave_scripts.torture import (command_lines, edits, flips, full_disk, interrupts, kills, low_memory, problem_files,
+                                    problem_flips, random_runs, streams, two_processes)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -26,5 +26,7 @@ KINDS = (
     Kind("two-processes", "two commands that write one directory", two_processes.trial),
     Kind("full-disk", "an output directory on a small disk", full_disk.trial, 1, full_disk.missing),
     Kind("low-memory", "60 MB to 1 GB of address space", low_memory.trial),
+    Kind("streams", "standard streams that are closed or full", streams.trial),
+    Kind("command-lines", "words of a command line wrong, missing, doubled or moved", command_lines.trial),
     Kind("random-runs", "random scenes, options and combinations, every row judged", random_runs.trial, 3),
 )

@@ -39,10 +39,11 @@ class Trial:
     def find(self, what, detail=""):
         self.findings.append(Finding(what, detail[:SIGNS]))
 
-    def start(self, *words, memory_mb=None):
-        self.note("$ " + (f"ulimit -v {memory_mb * 1024}; " if memory_mb else "") + shlex.join(["cleave", *map(str, words)]))
+    def start(self, *words, memory_mb=None, streams=""):
+        limit = f"ulimit -v {memory_mb * 1024}; " if memory_mb else ""
+        self.note(f"$ {limit}{shlex.join(['cleave', *map(str, words)])} {streams}".rstrip())
         self.count("programs")
-        return child.start([self.program, *words], self.directory, memory_mb)
+        return child.start([self.program, *words], self.directory, memory_mb, streams)
 
     def finish(self, started):
         ending = child.finish(started, self.patience)
