@@ -2,6 +2,7 @@
 
 CLEAVE_PROGRAM is the program that is tried.
 """
+import contextlib
 import json
 import os
 import pathlib
@@ -19,6 +20,7 @@ from cleave_scripts.torture import full_disk  # noqa: E402
 from cleave_scripts.torture.registry import KINDS  # noqa: E402
 
 PROGRAM = os.environ["CLEAVE_PROGRAM"]
+HONEST = str(pathlib.Path(PROGRAM).resolve())
 MISBEHAVING = pathlib.Path(__file__).resolve().parent / "misbehaving"
 QUICK = {"problem-files": 60, "problem-flips": 15, "flips": 15, "edits": 15, "kills": 5, "interrupts": 3, "two-processes": 3,
          "full-disk": 4, "low-memory": 6, "streams": 6, "command-lines": 30, "random-runs": 6}
@@ -40,7 +42,7 @@ class TortureCase(unittest.TestCase):
     def torture(self, kinds, *options, code, misbehaviour=None, seed=1):
         """What torture.json says afterwards."""
         environment = dict(os.environ, CLEAVE_PROGRAM=str(MISBEHAVING if misbehaviour else PROGRAM),
-                           HONEST_PROGRAM=str(pathlib.Path(PROGRAM).resolve()), MISBEHAVIOUR=misbehaviour or "")
+                           HONEST_PROGRAM=HONEST, MISBEHAVIOUR=misbehaviour or "")
         done = subprocess.run(self.command(kinds, *options, seed=seed), env=environment, capture_output=True, text=True,
                               check=False)
         told = self.out / "findings.jsonl"
@@ -141,6 +143,26 @@ class CommandTest(TortureCase):
         self.assertNotIn("Traceback", told)
         self.assertEqual(json.loads((self.out / "torture.json").read_text())["state"], "interrupted")
         self.assertIn("# Hostile trials", (self.out / "torture.md").read_text())
+
+    def test_an_interrupt_leaves_nothing_running(self):
+        environment = dict(os.environ, CLEAVE_PROGRAM=str(MISBEHAVING), HONEST_PROGRAM=HONEST, MISBEHAVIOUR="hang")
+        with subprocess.Popen(self.command("two-processes"), env=environment, stderr=subprocess.PIPE, text=True) as running:
+            while not (hanging := self.children_of(running.pid)):
+                time.sleep(0.05)
+            running.send_signal(signal.SIGINT)
+            running.communicate()
+        self.assertEqual(running.returncode, 130)
+        self.assertFalse([pid for pid in hanging if pathlib.Path(f"/proc/{pid}").exists()])
+
+    @staticmethod
+    def children_of(pid):
+        """Those that hang in a trial."""
+        found = []
+        for child in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split():
+            with contextlib.suppress(OSError):  # it has ended
+                if os.readlink(f"/proc/{child}/cwd").endswith("two-processes-0"):
+                    found.append(child)
+        return found
 
     def test_a_finding_is_repeated_by_its_number(self):
         self.torture("edits", "--count", 3, code=3, misbehaviour="believe")

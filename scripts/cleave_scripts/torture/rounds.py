@@ -59,6 +59,8 @@ class Rounds:
             kind.trial(trial)
         except Exception as error:  # a fault of the trial must be seen, and must not end the others
             trial.find(f"the trial itself fails: {type(error).__name__}", traceback.format_exc())
+        finally:
+            trial.end()
         self.tally.add(kind.name, trial, time.monotonic() - begin)
         if trial.findings:
             self.keeper.keep(trial, self.tell)

@@ -27,7 +27,7 @@ class Trial:
         self.program, self.material, self.patience = tools.program, tools.material, tools.patience
         self.random = random.Random(f"{seed}/{kind}/{number}")
         self.counts = collections.Counter()
-        self.findings, self.log = [], []
+        self.findings, self.log, self.started = [], [], []
 
     def note(self, text):
         """A line for whoever repeats it: what was done to which file."""
@@ -43,7 +43,15 @@ class Trial:
         limit = f"ulimit -v {memory_mb * 1024}; " if memory_mb else ""
         self.note(f"$ {limit}{shlex.join(['cleave', *map(str, words)])} {streams}".rstrip())
         self.count("programs")
-        return child.start([self.program, *words], self.directory, memory_mb, streams)
+        self.started.append(child.start([self.program, *words], self.directory, memory_mb, streams))
+        return self.started[-1]
+
+    def end(self):
+        """Leaves nothing running, however the trial has ended."""
+        for process in self.started:
+            if process.poll() is None:
+                child.kill_group(process)
+                process.communicate()
 
     def finish(self, started):
         ending = child.finish(started, self.patience)
