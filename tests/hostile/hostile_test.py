@@ -149,6 +149,7 @@ class CommandTest(TortureCase):
         with subprocess.Popen(self.command("two-processes"), env=environment, stderr=subprocess.PIPE, text=True) as running:
             while not (hanging := self.children_of(running.pid)):
                 time.sleep(0.05)
+            time.sleep(0.5)  # it may be one that is only being started
             running.send_signal(signal.SIGINT)
             running.communicate()
         self.assertEqual(running.returncode, 130)
