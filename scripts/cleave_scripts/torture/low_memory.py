@@ -6,7 +6,7 @@ from cleave_scripts.torture.directories import broken_files
 from cleave_scripts.torture.endings import BAD_INPUT, CHECK_FAILED, DONE, ROWS_FAILED
 from cleave_scripts.torture.rows import judge_rows, read_rows
 
-LEAST_MB, MOST_MB = 60, 1024
+LEAST_MB, MOST_MB = 30, 1024
 EXPECTED = {"ok", "not_converged", "out_of_memory", "skipped"}
 NOT_LOADED = 127  # of the dynamic loader, which says so in one line
 DENSE = ("run", "--scene", "rock_pile", "--steps", "30", "--measure-every", "30", "--partitioner", "mix", "--refiner", "fm",
@@ -37,7 +37,7 @@ def _write(trial, memory_mb):
 
 
 def _dense(trial, memory_mb):
-    _write_words(trial, (*DENSE, "--bodies", trial.random.choice([30, 100, 200])), memory_mb)
+    _write_words(trial, (*DENSE, "--bodies", trial.random.choice([30, 100, 200, 400])), memory_mb)
 
 
 def _write_words(trial, words, memory_mb):

@@ -25,7 +25,7 @@ KINDS = (
     Kind("interrupts", "SIGINT or SIGTERM at a random moment; the program ends by itself and says so", interrupts.trial),
     Kind("two-processes", "two commands that write one directory", two_processes.trial),
     Kind("full-disk", "an output directory on a small disk", full_disk.trial, 1, full_disk.missing),
-    Kind("low-memory", "60 MB to 1 GB of address space", low_memory.trial),
+    Kind("low-memory", "30 MB to 1 GB of address space", low_memory.trial),
     Kind("streams", "standard streams that are closed or full", streams.trial),
     Kind("command-lines", "words of a command line wrong, missing, doubled or moved", command_lines.trial),
     Kind("random-runs", "random scenes, options and combinations, every row judged", random_runs.trial, 3),

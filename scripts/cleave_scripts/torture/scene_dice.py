@@ -60,17 +60,19 @@ def _friction(dice):
 PARTITIONERS = ("mindp", "maxdp", "bfs", "mr", "mix")
 REFINERS = ("none", "kl", "fm")
 NAMED = ("dense", "monolithic", "schur", "exact", "pgs")
-STRATEGIES = ("pivot", "newton", "interior-point", "alternate", "auto")
+STRATEGIES = ("pivot", "newton", "interior-point", "auto")
 KERNELS = ("monolithic", "schur-rows", "schur-bodies", "dense", "auto")
 
 
 def combinations(dice):
     """Words that say who splits and who solves; those that the choice has no use for are refused by the program."""
-    pairs = [f"{strategy}:{kernel}" for strategy in STRATEGIES for kernel in KERNELS]
-    words = ["--partitioner", ",".join(dice.sample(PARTITIONERS, dice.choice([1, 2, 5]))),
+    pairs = [*(f"{strategy}:{kernel}" for strategy in STRATEGIES for kernel in KERNELS), "alternate:schur-rows"]
+    most = dice.choice([1, 2, 3, 8, 25])
+    chosen = [f"{name}@max-bodies={most}" for name in dice.sample(PARTITIONERS, dice.choice([1, 2, 5]))]
+    words = ["--partitioner", ",".join(chosen),
              "--refiner", ",".join(dice.sample(REFINERS, dice.choice([1, 3]))),
              "--solver", ",".join([*dice.sample(NAMED, dice.choice([1, 2])), *dice.sample(pairs, dice.choice([0, 1, 3]))]),
-             "--max-bodies", dice.choice([1, 2, 3, 8, 25]), "--threads", dice.choice([1, 2]), "--repeats", 1]
+             "--threads", dice.choice([1, 2]), "--repeats", 1]
     return words + (["--skip-small-islands"] if dice.random() < 0.1 else [])
 
 
