@@ -27,9 +27,7 @@ def _fault_of_refusal(ending):
     lines = [line for line in ending.lines() if not INFORMATION.search(line)]
     if len(lines) != 1:
         return "no error line" if not lines else "several error lines"
-    if not lines[0].isprintable():
-        return "error line with control characters"
-    return "output besides the error line" if ending.out and len(lines) == len(ending.lines()) else None
+    return None if lines[0].isprintable() else "error line with control characters"
 
 
 def _signal_name(number):
