@@ -32,6 +32,13 @@ void set_limit(int resource, rlim_t most) {
   ::setrlimit(resource, &limit);
 }
 
+// How much address space may be used at all, where little is allowed (ulimit -v); else 0.
+std::size_t allowed_address_space_bytes() {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_AS, &limit);
+  return limit.rlim_cur == RLIM_INFINITY ? 0 : limit.rlim_cur;
+}
+
 std::size_t address_space_bytes() {
   unsigned long pages = 0;
   if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
@@ -103,8 +110,14 @@ void check_end(const std::string& subject, const ReadLimits& limits, int status)
     fail(subject, "damaged: the HDF5 library had not read it after " + std::to_string(limits.processor_s) +
                       " s of processor time");
   const char* name = signal == 0 ? nullptr : ::sigabbrev_np(signal);
-  fail(subject, std::string("damaged: the HDF5 library crashed while reading it") +
-                    (name == nullptr ? "" : std::string(" (SIG") + name + ")"));
+  const std::string crash = std::string("the HDF5 library crashed while reading it") +
+                            (name == nullptr ? "" : std::string(" (SIG") + name + ")");
+  // The library crashes where it finds no memory too.
+  const std::size_t allowed = allowed_address_space_bytes();
+  if (allowed != 0 && allowed < address_space_bytes() + limits.memory_bytes)
+    fail(subject,
+         "cannot be read with " + std::to_string(allowed / 1024) + " kB of memory allowed: " + crash);
+  fail(subject, "damaged: " + crash);
 }
 
 }  // namespace

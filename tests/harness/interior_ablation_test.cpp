@@ -43,7 +43,7 @@ TEST(InteriorAblation, AnUnknownConstantIsOneLine) {
   const TemporaryDirectory directory;
   const ProgramResult result = ablate(directory, "firm_polisch");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_NE(result.err.find("--constant is 'firm_polisch', expected one of fixed_width_m_per_s, "),
+  EXPECT_NE(result.err.find("--constant has 'firm_polisch', expected some of fixed_width_m_per_s,"),
             std::string::npos)
       << result.err;
   EXPECT_FALSE(std::filesystem::exists(directory / "out/interior_point.csv"));
