@@ -21,7 +21,8 @@ int verify(const std::vector<std::string>& paths) {
   if (paths.empty()) throw std::invalid_argument("PATHS: problem files or output directories are required");
   CheckList list;
   for (const std::string& path : paths) {
-    if (fs::is_directory(path)) {
+    std::error_code none;  // what cannot be looked at is no directory, and reading it says why
+    if (fs::is_directory(path, none)) {
       verify_directory(path, list);
     } else {
       verify_file(path, list);
