@@ -23,6 +23,8 @@ toml::table parsed_toml(const std::string& text, const std::string& name) {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     reject_at(name, error.source(), "not TOML", std::string(error.description()));
+  } catch (const TomlAssertion&) {
+    throw std::invalid_argument(name + ": not TOML: the parser gives up on it");
   }
 }
 

@@ -85,7 +85,7 @@ void check_owned(const RunOptions& options, const std::set<std::string>& stored,
   }
   if (with_world) all.push_back(&options.friction);
   for (const auto& [name, value] : options.common) {
-    const auto reads = [&](const Algorithm* algorithm) { return algorithm->settings.has(name); };
+    const auto reads = [&name = name](const Algorithm* algorithm) { return algorithm->settings.has(name); };
     if (find_common_parameter(name) != nullptr && !stored.contains(name) && std::ranges::none_of(all, reads))
       reject(name, "is a parameter of " + owners_of(name) + "; nothing in this run has it");
   }

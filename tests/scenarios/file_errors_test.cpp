@@ -102,6 +102,8 @@ TEST(FileErrors, NumbersAndRanges) {
       {body("[1, 1, 1]", "[1,\n  1,\n  -1]"), "s.toml:6: body[0].edges_m[2]: -1 is not in [1e-06, 1e+06]"},
       {body("[0, 0, 2]", "[0, 'x', 2]"),
        "s.toml:6: body[0].position_m[1]: 'x' is not a number in [-1e+06, 1e+06]"},
+      {body("2]", "9223372036854775807]"),
+       "s.toml:6: body[0].position_m[2]: 9223372036854775807 is not in [-1e+06, 1e+06]"},
       {"contact_layer_m = 1\n" + body(), "s.toml:1: contact_layer_m: 1 is not in [0, 0.01]"},
       {"[ground]\nheight_m = {}\n" + body(),
        "s.toml:2: ground.height_m: a table is not a number in [-1e+06, 1e+06]"},
@@ -110,6 +112,11 @@ TEST(FileErrors, NumbersAndRanges) {
        "them "
        "not 0"},
   });
+}
+
+// Found by a fuzzer: an assertion of the library ended the program.
+TEST(FileErrors, WhatBreaksTheParsersAssertions) {
+  expect_errors({{"a = [1,}", "s.toml: not TOML: the parser gives up on it"}});
 }
 
 TEST(FileErrors, PlacesAndGrids) {

@@ -91,6 +91,12 @@ class SetupTest(StandInTest):
         self.assertEqual([word for word in install.split()[2:] if word[0] != "-"], ["cmake", "libode-dev"])
         self.assertEqual(build, ["cmake --preset asan", "cmake --build --preset asan"])
 
+    def test_a_preset_with_packages_of_its_own_gets_them_too(self):
+        own = [line.split()[0] for line in (SCRIPTS / "data" / "packages_fuzz.txt").read_text().splitlines() if line[0] != "#"]
+        self.assertEqual(self.setup_script("--preset", "fuzz").returncode, 0)
+        self.assertEqual([word for word in self.log()[1].split()[2:] if word[0] != "-"], own)
+        self.assertEqual(self.log()[2:], ["cmake --preset fuzz", "cmake --build --preset fuzz"])
+
     def test_what_another_package_provides_is_there(self):
         self.install([name for name in self.packages if name not in ("npm", "cmake")] + ["node, npm, cmake (= 3)"])
         self.assertEqual(self.setup_script().returncode, 0)
