@@ -3,73 +3,90 @@
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <functional>
-#include <map>
+#include <new>
+#include <span>
 #include <stdexcept>
 
 #include "harness/base/names.h"
+#include "harness/base/standard_streams.h"
+#include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
 #include "harness/files/build_info.h"
 
 namespace {
 
 using namespace cleave;
+using Arguments = std::vector<std::string>;
 
-std::vector<std::string> long_options(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options())
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
+// Of the program's arguments: a command comes first, or an option of the program's own stands alone.
+void check_first(std::span<const std::string> arguments) {
+  const Arguments names = names_of(commands());
+  if (arguments.empty()) throw std::invalid_argument("a command is required: " + joined(names));
+  const std::string& first = arguments.front();
+  if (std::ranges::count(names, first) > 0) return;
+  if (!first.starts_with("-")) throw std::invalid_argument(unknown_name_text(first, names));
+  if (std::ranges::count(Arguments{"-h", "--help", "--version"}, first) == 0)
+    throw std::invalid_argument(first + ": no such option before a command; see cleave --help");
+  if (arguments.size() > 1) throw std::invalid_argument("unexpected argument '" + arguments[1] + "'");
 }
 
-// What the parser could not place, with the nearest thing it could.
-void reject_extras(const CLI::App& app) {
-  for (std::string extra : app.remaining()) {
-    if (!extra.starts_with("-")) throw std::invalid_argument("unexpected argument '" + extra + "'");
-    extra = extra.substr(0, extra.find('='));
-    const std::string nearest = nearest_name(extra, long_options(app));
-    const std::string question = nearest.empty() ? "" : " (did you mean " + nearest + "?)";
-    throw std::invalid_argument(extra + ": no such option" + question + "; see cleave " + app.get_name() +
-                                " --help");
-  }
-}
-
-int run_program(int argc, char** argv) {
-  CLI::App app("Graph partitioning for parallel direct solvers of rigid-body steps", "cleave");
-  app.allow_extras();
-  app.set_version_flag("--version", [] { return version_text(build_info()); });
-  std::map<const CLI::App*, std::function<int()>> actions;
-  const std::vector<std::string> arguments(argv, argv + argc);
-  for (const Command& command : commands()) {
-    CLI::App* sub = app.add_subcommand(command.name, command.help);
-    sub->allow_extras();
-    actions[sub] = command.declare(*sub, arguments);
-  }
-
+// Whether there is nothing to do but to print help or version, which it does.
+bool prints_help(CLI::App& app, std::span<const std::string> arguments) {
   try {
-    app.parse(argc, argv);
+    app.parse(Arguments(arguments.rbegin(), arguments.rend()));
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    app.exit(help);
+    return true;
   }
-  if (app.get_subcommands().empty()) {
-    const std::vector<std::string> extras = app.remaining();
-    if (extras.empty()) throw std::invalid_argument("a command is required: " + joined(names_of(commands())));
-    throw std::invalid_argument(unknown_name_text(extras.front(), names_of(commands())));
+  return false;
+}
+
+// Help that names the commands, or the version.
+int print_about(std::span<const std::string> arguments) {
+  CLI::App app("Graph partitioning for parallel direct solvers of rigid-body steps", "cleave");
+  app.set_version_flag("--version", [] { return version_text(build_info()); });
+  for (const Command& command : commands()) app.add_subcommand(command.name, command.help);
+  prints_help(app, arguments);
+  return kExitOk;
+}
+
+int run_program(const Arguments& arguments) {
+  const std::span<const std::string> given = std::span(arguments).subspan(1);
+  check_first(given);
+  const auto command =
+      std::ranges::find(commands(), given.front(), [](const Command& row) { return std::string(row.name); });
+  if (command == commands().end()) return print_about(given);
+  CLI::App app(command->help, "cleave " + given.front());
+  app.allow_extras();
+  const std::function<int()> act = command->declare(app, arguments);
+  check_arguments(app, given.subspan(1));
+  if (prints_help(app, given.subspan(1))) return kExitOk;
+  reject_extras(app);
+  return act();
+}
+
+// The exit code; what goes wrong is said.
+int guarded(const std::string& name, const std::function<int()>& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "%s: out of memory\n", name.c_str());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", name.c_str(), error.what());
   }
-  const CLI::App* chosen = app.get_subcommands().front();
-  reject_extras(*chosen);
-  return actions.at(chosen)();
+  return kExitBadInput;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string command = argc > 1 && argv[1][0] != '-' ? std::string(" ") + argv[1] : "";
-  try {
-    return run_program(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "cleave%s: %s\n", command.c_str(), error.what());
-    return kExitBadInput;
-  }
+  open_standard_streams();
+  const std::string name = argc > 1 && argv[1][0] != '-' ? std::string("cleave ") + argv[1] : "cleave";
+  const int code = guarded(name, [&] { return run_program(Arguments(argv, argv + argc)); });
+  const int output = guarded(
+      name, [] { return finish_standard_output() == OutputState::whole ? kExitOk : kExitReaderGone; });
+  return code == kExitOk ? output : code;
 }

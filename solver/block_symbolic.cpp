@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <new>
 #include <numeric>
 
 namespace cleave {
@@ -75,8 +76,9 @@ void BlockSymbolic::order(std::span<const int> stage_of_node) {
     }
     constraint = mark_.data();
   }
-  [[maybe_unused]] const int status = camd_order(node_count_, adjacency_first_.data(), adjacency_.data(),
-                                                 node_at_position_.data(), nullptr, nullptr, constraint);
+  const int status = camd_order(node_count_, adjacency_first_.data(), adjacency_.data(),
+                                node_at_position_.data(), nullptr, nullptr, constraint);
+  if (status == CAMD_OUT_OF_MEMORY) throw std::bad_alloc();
   assert(status == CAMD_OK);
   for (int p = 0; p < node_count_; ++p) position_of_node_[node_at_position_[p]] = p;
 }

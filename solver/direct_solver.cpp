@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "solver/kernels/kernel.h"
@@ -119,19 +120,21 @@ std::string DirectSolver::refuse_set(const StepProblem& problem) {
 
 // Rows between the same bodies, or at least between pairs that the analysed pattern has a place for.
 bool DirectSolver::reuse_analysis(const StepProblem& problem, std::span<const int> part_of_body) {
-  if (!analyzed_ || !std::ranges::equal(part_of_body, analyzed_part_)) return false;
+  if (!std::ranges::equal(part_of_body, analyzed_part_)) return false;
   return problem.row_body == analyzed_body_ || kernel_->rebind(step_, part_of_body, state_.tasks);
 }
 
 void DirectSolver::analyze(const StepProblem& problem, std::span<const int> part_of_body) {
-  const bool reused = state_.options.reuse_analysis && reuse_analysis(problem, part_of_body);
+  // Not analysed until all of it is done: there may be no memory half-way.
+  const bool analyzed = std::exchange(analyzed_, false);
+  const bool reused = analyzed && state_.options.reuse_analysis && reuse_analysis(problem, part_of_body);
   {
     StageTimer timer(clock_, Stage::analyze);
-    analyzed_ = true;
     analyzed_body_ = problem.row_body;
     analyzed_part_.assign(part_of_body.begin(), part_of_body.end());
   }
   if (!reused) kernel_->analyze(step_, part_of_body, state_.tasks);
+  analyzed_ = true;
 }
 
 // Runs the strategies one after the other until one succeeds; each hand-over is counted. When all fail, the

@@ -10,12 +10,14 @@
 #include <span>
 
 #include "solver/prepared_step.h"
+#include "solver/stop.h"
 
 namespace cleave {
 
 // Of a problem without turned boxes. impulse (m) and v = v0 + M^-1 J^T impulse (n, 6) are updated in place.
-void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double> impulse,
-                         std::span<double> v);
+// stop: as in SolveOptions, looked at before every sweep.
+void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double> impulse, std::span<double> v,
+                         const std::atomic<bool>* stop);
 
 // w_r summed in four lanes, which compilers turn into vector instructions. u (12): velocities of the row's two bodies.
 struct LaneSlack {

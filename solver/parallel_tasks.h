@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solver/stage_clock.h"
+#include "solver/stop.h"
 #include "solver/worker_team.h"
 
 namespace cleave {
@@ -19,7 +20,8 @@ void start_threads(int threads);
 
 class ParallelTasks {
  public:
-  ParallelTasks(StageClock& clock, int threads) : clock_(clock), team_(WorkerTeam::shared(threads)) {}
+  ParallelTasks(StageClock& clock, int threads, const std::atomic<bool>* stop = nullptr)
+      : clock_(clock), team_(WorkerTeam::shared(threads)), stop_(stop) {}
 
   // Tasks are started in ascending order; one may wait for an earlier one.
   template <class Task>
@@ -38,6 +40,7 @@ class ParallelTasks {
 
   StageClock& clock() { return clock_; }
   int threads() const { return team_.threads(); }
+  const std::atomic<bool>* stop() const { return stop_; }  // of the solve
 
  private:
   template <class Task>
@@ -55,6 +58,7 @@ class ParallelTasks {
 
   StageClock& clock_;
   WorkerTeam& team_;
+  const std::atomic<bool>* stop_;
   std::vector<double> task_ms_;
 };
 

@@ -35,11 +35,13 @@ void SolveState::update_velocity() {
 }
 
 bool SolveState::factor() {
+  check_stop(options.stop);
   ++summary->factorizations;
   return kernel->factor({weight, step->set().axes()}, tasks);
 }
 
 void SolveState::solve() {
+  check_stop(options.stop);
   kernel->solve(f_v, f_r, dv, dlambda, tasks);
 }
 

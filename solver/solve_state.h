@@ -35,7 +35,7 @@ struct Settling {
 
 struct SolveState {
   SolveState(const DirectOptions& solve_options, StageClock& clock)
-      : options(solve_options), tasks(clock, solve_options.threads) {}
+      : options(solve_options), tasks(clock, solve_options.threads, solve_options.stop) {}
 
   // Binds the state to a problem; impulses start from the warm start (along the axes), moved into the set.
   void begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,

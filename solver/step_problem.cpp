@@ -122,8 +122,8 @@ std::string find_kind_error(const StepProblem& p, std::size_t r) {
     return normal == -1 ? std::string()
                         : error_at("friction_row", r, normal, "-1 for a row that is not friction");
   }
-  if (normal < 0 || normal >= p.row_count() || p.row_kind[normal] != RowKind::normal) {
-    return error_at("friction_row", r, normal, "the index of a normal row");
+  if (normal < 0 || normal >= static_cast<int>(r) || p.row_kind[normal] != RowKind::normal) {
+    return error_at("friction_row", r, normal, "the index of a normal row before it");
   }
   return {};
 }

@@ -12,6 +12,7 @@
 #include "solver/solution.h"
 #include "solver/stage_clock.h"
 #include "solver/step_problem.h"
+#include "solver/stop.h"
 
 namespace cleave {
 
@@ -25,6 +26,9 @@ bool has_result(SolveStatus status);
 struct SolveOptions {
   int threads = 1;                // >= 1
   double target_m_per_s = 1e-11;  // residual aimed at; exact is judged at kExactLimit
+  // Where there is one and it comes true, a solve ends with SolveStopped at its next factorisation,
+  // back-substitution, sweep or block column of a dense interface. Must outlive the solver.
+  const std::atomic<bool>* stop = nullptr;
 };
 
 struct SolveSummary {
@@ -51,7 +55,7 @@ class StepSolver {
   // part_of_body: (n) ids 0..parts-1 of the subsystems; ignored where !uses_partition().
   // solution.impulse is the warm start (m); impulse and velocity are the result. The object keeps its
   // scratch: the second solve of one structure allocates nothing in our code. Numerical trouble is a status,
-  // never an exception.
+  // never an exception; SolveStopped and std::bad_alloc are, and leave nothing in solution to rely on.
   SolveSummary solve(const StepProblem& problem, std::span<const int> part_of_body, Solution& solution);
 
   // Whether the result's cost depends on part_of_body; solvers that ignore partitions run once a step.

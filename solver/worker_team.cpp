@@ -13,7 +13,9 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
 namespace cleave {
 namespace {
@@ -77,6 +79,25 @@ bool look_out(Condition done) {
 
 constexpr std::uint64_t kTasks = 0xffffffff;  // lower half of open_
 
+// OpenMP ends the program where the system makes no more threads. So as many are made by somebody who says so.
+void check_threads(int count) {
+  std::atomic<bool> all_made{false};
+  std::vector<std::thread> threads;
+  threads.reserve(count);
+  std::string refusal;
+  try {
+    while (static_cast<int>(threads.size()) < count)
+      threads.emplace_back([&all_made] { all_made.wait(false); });
+  } catch (const std::system_error& error) {
+    refusal = "the system makes " + std::to_string(threads.size()) + " of " + std::to_string(count) +
+              " threads: " + error.what();
+  }
+  all_made = true;
+  all_made.notify_all();
+  for (std::thread& thread : threads) thread.join();
+  if (!refusal.empty()) throw std::runtime_error(refusal);
+}
+
 }  // namespace
 
 void wait_until(std::atomic<int>& counter, int at_least) {
@@ -93,6 +114,7 @@ void raise(std::atomic<int>& counter) {
 WorkerTeam::WorkerTeam(int threads) : threads_(threads) {
   if (threads == 1) return;
   asked_look_out();  // its error belongs to the caller
+  check_threads(threads);
   // The first member of the region has the place of the caller and only waits for the others.
   workers_ = std::thread([this] {
 #pragma omp parallel num_threads(threads_)

@@ -18,7 +18,8 @@ namespace cleave {
 
 class WorkerTeam {
  public:
-  // >= 1; the caller of run() is one of them. Throws std::runtime_error where OpenMP grants fewer.
+  // >= 1; the caller of run() is one of them. Throws std::runtime_error where the system or OpenMP
+  // grants fewer.
   explicit WorkerTeam(int threads);
   ~WorkerTeam();
   WorkerTeam(const WorkerTeam&) = delete;

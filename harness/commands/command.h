@@ -16,7 +16,8 @@ enum ExitCode {
   kExitBadInput = 1,
   kExitCellsFailed = 2,
   kExitVerifyFailed = 3,
-  kExitInterrupted = 130
+  kExitInterrupted = 130,
+  kExitReaderGone = 141
 };
 
 struct Command {

@@ -56,7 +56,7 @@ int export_graph(const ExportOptions& options) {
   if (options.out.empty()) throw std::invalid_argument("--out: is required: the file to write");
   if (fs::exists(options.out) && !options.force)
     throw std::invalid_argument("--out: " + options.out + " exists; name another file or give --force");
-  const ProblemFile file = read_problem_file(options.file);
+  const ProblemFile file = read_problem_file_aloud(options.file);
   const BodyGraph graph = body_graph_of(file.problem, file.step);
   for (const ExportFormat& format : kFormats)
     if (options.format == format.name) write_whole_file(options.out, format.text(graph));

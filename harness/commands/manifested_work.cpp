@@ -6,6 +6,9 @@
 
 #include "harness/commands/command.h"
 #include "harness/experiment/step_record.h"
+#include "harness/files/checksums.h"
+#include "harness/files/directory_lock.h"
+#include "harness/files/output_directory.h"
 #include "harness/world/ode_world.h"
 
 namespace cleave {
@@ -14,11 +17,20 @@ namespace {
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
+constexpr int kStopSignals[] = {SIGINT, SIGTERM};
+
+// The next one, of either kind, ends the program as if nothing had been set.
+void take_stop(int) {
+  stop = true;
+  for (const int signal : kStopSignals) ::signal(signal, SIG_DFL);
+}
+
 void stop_on_signals() {
   struct sigaction action {};
-  action.sa_handler = [](int) { stop = true; };
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
-  for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
+  action.sa_handler = take_stop;
+  action.sa_flags = SA_RESTART;
+  for (const int signal : kStopSignals) ::sigaddset(&action.sa_mask, signal);  // one handler after the other
+  for (const int signal : kStopSignals) ::sigaction(signal, &action, nullptr);
 }
 
 int exit_code(const RunSummary& summary) {
@@ -30,23 +42,39 @@ int exit_code(const RunSummary& summary) {
 
 const std::atomic<bool>& stop_requested() { return stop; }
 
-int do_manifested_work(const std::filesystem::path& directory, const WorkDescription& description,
+int do_manifested_work(const RunOptions& options, const WorkDescription& description,
                        const std::function<RunSummary()>& work) {
+  const std::filesystem::path directory = create_output_directory(options.out);
+  const DirectoryLock lock(directory, "cleave " + description.command);
+  // Someone else may have finished there between the check and the lock.
+  check_files_absent(options.out, options.force, description.files);
+  if (options.force) remove_earlier_work(directory);
   stop_on_signals();
   RunSummary summary;
-  Manifest manifest(directory / "manifest.json", description);
+  Manifest manifest(directory / kManifestFile, description);
   manifest.around([&] {
     summary = work();
     return WorkResult{summary.interrupted, summary.counts()};
   });
+  std::vector<std::string> files = description.files;
+  files.push_back(kManifestFile);
+  write_checksums(directory, files);
   std::fprintf(stderr, "%s%s", summary.text().c_str(), summary.interrupted ? "interrupted\n" : "");
   return exit_code(summary);
 }
 
 WorkDescription describe_work(const std::string& command, const std::vector<std::string>& argv,
-                              const RunOptions& options, const std::vector<OptionValue>& values) {
-  return {
-      command, argv, run_id(values), values, named_algorithms(options), columns(), {{"ode", ode_version()}}};
+                              const RunOptions& options, const std::vector<OptionValue>& values,
+                              const std::vector<std::string>& files) {
+  return {.command = command,
+          .argv = argv,
+          .run_id = run_id(values),
+          .options = values,
+          .algorithms = named_algorithms(options),
+          .steps_schema = kStepsSchema,
+          .columns = columns(),
+          .files = files,
+          .libraries = {{"ode", ode_version()}}};
 }
 
 void print_left_out(const RunOptions& options) {

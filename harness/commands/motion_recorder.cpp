@@ -89,7 +89,7 @@ void MotionRecorder::record(const ObservedStep& step) {
 
 void MotionRecorder::finish() {
   if (!file_) return;
-  file_->sync();
+  file_->publish();
   file_.reset();
 }
 

@@ -10,7 +10,6 @@
 #include "harness/commands/run_command_line.h"
 #include "harness/commands/simulate.h"
 #include "harness/experiment/options.h"
-#include "harness/files/output_directory.h"
 #include "harness/files/problem_file.h"
 #include "harness/world/extract_shapes.h"
 
@@ -55,15 +54,9 @@ RunOptions parse_record_options(const Given& typed) {
   return options;
 }
 
-std::string file_name(const RunOptions& options, int step) {
-  char number[16];
-  std::snprintf(number, sizeof number, "%06d", step);
-  return options.scene.name + "_step" + number + ".h5";
-}
-
 std::vector<std::string> files_of(const RunOptions& options) {
   std::vector<std::string> files = {"steps.csv"};
-  for (const int step : options.at) files.push_back(file_name(options, step));
+  for (const int step : options.at) files.push_back(problem_file_name(options.scene.name, step));
   return files;
 }
 
@@ -88,15 +81,14 @@ ProblemFile problem_file_of(const ObservedStep& step, const RunOptions& options)
 
 int record(const Given& given, const std::vector<std::string>& argv) {
   const RunOptions options = parse_record_options(given);
-  check_output_directory(options.out, options.force, files_of(options));
   const std::filesystem::path out = options.out;
   const auto write = [&](const ObservedStep& step) {
     if (step.rows.empty()) return;
-    const std::string name = file_name(options, step.step);
+    const std::string name = problem_file_name(options.scene.name, step.step);
     write_problem_file(out / name, problem_file_of(step, options));
     for (StepRecord& row : step.rows) row.problem_file = name;
   };
-  return simulate("record", argv, options, write);
+  return simulate("record", argv, options, files_of(options), write);
 }
 
 }  // namespace

@@ -65,6 +65,17 @@ void check_names(const ReplayOptions& options) {
   }
 }
 
+// --force takes away what an earlier command left in --out; that must not be what is replayed.
+void check_not_taken_away(const ReplayOptions& options) {
+  std::error_code error;
+  for (const fs::path& earlier : files_of_earlier_work(options.solve.out))
+    for (const std::string& file : options.files)
+      if (fs::equivalent(file, earlier, error))
+        throw std::invalid_argument(
+            "--out: '" + options.solve.out + "' holds " + file +
+            ", which is replayed and would be overwritten with the rest; name another directory");
+}
+
 std::vector<std::string> files_written(const ReplayOptions& options) {
   std::vector<std::string> files = {"steps.csv"};
   if (!options.write_solutions) return files;
@@ -112,7 +123,7 @@ class Replay {
  public:
   // Makes every solver, partitioner and refiner.
   explicit Replay(const ReplayOptions& options)
-      : options_(options), combinations_(make_combinations(options.solve, no_world_)) {}
+      : options_(options), combinations_(make_combinations(options.solve, no_world_, &stop_requested())) {}
 
   RunSummary run(const fs::path& out) {
     Stopwatch watch;
@@ -120,9 +131,13 @@ class Replay {
     CsvRecorder recorder(out / "steps.csv", csv_header());
     ProgressLine line("replay");
     const int total = static_cast<int>(options_.files.size());
-    for (int i = 0; i < total && !stop_requested(); ++i) {
-      solve(options_.files[i], out, recorder);
-      line.update(i + 1, total);
+    try {
+      for (int i = 0; i < total && !stop_requested(); ++i) {
+        solve(options_.files[i], out, recorder);
+        line.update(i + 1, total);
+      }
+    } catch (const SolveStopped&) {
+      // The rows of the problem at hand are not all there, so none is written.
     }
     summary_.wall_s = watch.lap_ms() / 1000;
     summary_.interrupted = stop_requested();
@@ -155,14 +170,15 @@ class Replay {
 
 int replay(const ReplayOptions& options, const std::vector<std::string>& argv) {
   if (options.files.empty()) throw std::invalid_argument("FILES: at least one problem file is required");
-  for (const std::string& file : options.files) read_problem_file(file);  // before anything is created
+  for (const std::string& file : options.files) read_problem_file_aloud(file);  // before anything is created
   if (options.write_solutions) check_names(options);
+  check_not_taken_away(options);
   check_output_directory(options.solve.out, options.solve.force, files_written(options));
   print_left_out(options.solve);
   Replay work(options);
-  const fs::path out = create_output_directory(options.solve.out);
-  return do_manifested_work(out, describe_work("replay", argv, options.solve, values_of(options)),
-                            [&] { return work.run(out); });
+  return do_manifested_work(
+      options.solve, describe_work("replay", argv, options.solve, values_of(options), files_written(options)),
+      [&] { return work.run(options.solve.out); });
 }
 
 // What is given beside --config wins; FILES do as a whole.

@@ -8,7 +8,6 @@
 #include "harness/experiment/options.h"
 #include "harness/files/build_info.h"
 #include "harness/files/json_writer.h"
-#include "harness/files/output_directory.h"
 
 namespace cleave {
 namespace {
@@ -41,8 +40,7 @@ int run(const std::map<std::string, std::string>& given, bool print_key,
   }
   std::vector<std::string> files = {"steps.csv"};
   if (options.record_motion) files.push_back("motion.h5");
-  check_output_directory(options.out, options.force, files);
-  return simulate("run", argv, options);
+  return simulate("run", argv, options, files);
 }
 
 }  // namespace

@@ -12,7 +12,8 @@
 namespace cleave {
 
 int simulate(const std::string& command, const std::vector<std::string>& argv, const RunOptions& options,
-             Simulation::Observer observe) {
+             const std::vector<std::string>& files, Simulation::Observer observe) {
+  check_output_directory(options.out, options.force, files);
   print_left_out(options);
   std::optional<MotionRecorder> motion;
   if (options.record_motion) {
@@ -20,10 +21,9 @@ int simulate(const std::string& command, const std::vector<std::string>& argv, c
     observe = [&](const ObservedStep& step) { motion->record(step); };
   }
   Simulation simulation(options, stop_requested(), std::move(observe));
-  const std::filesystem::path out = create_output_directory(options.out);
-  if (options.force && !motion) std::filesystem::remove(out / "motion.h5");  // of the run that is overwritten
-  return do_manifested_work(out, describe_work(command, argv, options, option_values(options)), [&] {
-    CsvRecorder recorder(out / "steps.csv", csv_header());
+  const WorkDescription work = describe_work(command, argv, options, option_values(options), files);
+  return do_manifested_work(options, work, [&] {
+    CsvRecorder recorder(std::filesystem::path(options.out) / "steps.csv", csv_header());
     const auto write = [&recorder](std::span<const StepRecord> rows) { recorder.append(csv_lines(rows)); };
     ProgressLine line(options.scene.text);
     RunSummary summary = simulation.run(write, [&line](int done, int total) { line.update(done, total); });

@@ -9,9 +9,9 @@
 
 namespace cleave {
 
-// observe: not beside --record-motion, which observes itself. Makes everything that can be refused, then
-// creates the directory, simulates into its steps.csv and manifest.json, and returns the exit code.
+// files: that the command writes into --out. observe: not beside --record-motion, which observes itself. Checks the
+// directory, makes everything that can be refused, then simulates into it and returns the exit code.
 int simulate(const std::string& command, const std::vector<std::string>& argv, const RunOptions& options,
-             Simulation::Observer observe = {});
+             const std::vector<std::string>& files, Simulation::Observer observe = {});
 
 }  // namespace cleave

@@ -1,5 +1,4 @@
 // cleave verify: checks what is stored from the files alone.
-#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -7,7 +6,7 @@
 
 #include "harness/commands/command.h"
 #include "harness/commands/verify_checks.h"
-#include "harness/commands/verify_rows.h"
+#include "harness/commands/verify_directory.h"
 
 namespace cleave {
 namespace {
@@ -15,20 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void verify_file(const fs::path& path, CheckList& list) {
-  check_problem_file(path, read_problem_file(path), list);
-}
-
-void verify_directory(const fs::path& directory, CheckList& list) {
-  std::vector<fs::path> files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory))
-    if (entry.path().extension() == ".h5" && entry.path().filename() != "motion.h5")
-      files.push_back(entry.path());
-  std::ranges::sort(files);
-  const bool has_table = fs::exists(directory / "steps.csv");
-  if (files.empty() && !has_table)
-    throw std::invalid_argument(directory.string() + ": holds neither problem files (.h5) nor steps.csv");
-  for (const fs::path& file : files) verify_file(file, list);
-  if (has_table) check_steps_table(directory, list);
+  check_problem_file(path, read_problem_file_aloud(path), list);
 }
 
 int verify(const std::vector<std::string>& paths) {

@@ -135,9 +135,18 @@ void CheckList::note(const std::string& subject, const std::string& text) {
   std::fprintf(stderr, "%s: %s\n", subject.c_str(), text.c_str());
 }
 
+void Findings::add(const std::string& text) {
+  if (++count_ <= kTold) told_ += "; " + text;
+}
+
+std::string Findings::text() const {
+  return told_ + (count_ > kTold ? "; and " + std::to_string(count_ - kTold) + " more" : "");
+}
+
 bool same_residual(double stored_m_per_s, double found_m_per_s) {
   if (std::isnan(stored_m_per_s) || std::isnan(found_m_per_s))
     return std::isnan(stored_m_per_s) && std::isnan(found_m_per_s);
+  if (stored_m_per_s == found_m_per_s) return true;  // infinities
   return std::abs(stored_m_per_s - found_m_per_s) <=
          kResidualTolerance_m_per_s + kResidualRelativeTolerance * std::abs(found_m_per_s);
 }

@@ -23,6 +23,19 @@ class CheckList {
   int failures_ = 0;
 };
 
+// What is wrong in the rows of a table: the first few in words, the others counted.
+class Findings {
+ public:
+  void add(const std::string& text);
+  bool none() const { return count_ == 0; }
+  std::string text() const;  // begins with "; " where there is any
+
+ private:
+  static constexpr int kTold = 5;
+  int count_ = 0;
+  std::string told_;
+};
+
 // The judge's numbers agree: equal up to the last digits, or both no numbers.
 bool same_residual(double stored_m_per_s, double found_m_per_s);
 

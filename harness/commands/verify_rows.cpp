@@ -1,177 +1,209 @@
 #include "harness/commands/verify_rows.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <map>
 #include <optional>
+#include <set>
+#include <stdexcept>
 #include <vector>
 
-#include "harness/base/hash.h"
+#include "harness/base/names.h"
+#include "harness/commands/expected_rows.h"
+#include "harness/commands/verify_file_rows.h"
+#include "harness/commands/verify_row_groups.h"
+#include "harness/commands/verify_row_sums.h"
 #include "harness/commands/verify_table.h"
-#include "harness/experiment/friction.h"
-#include "harness/experiment/problem_graph.h"
-#include "harness/experiment/step_columns.h"
 #include "harness/experiment/step_record.h"
-#include "solver/problem_hash.h"
-#include "solver/residual.h"
+#include "harness/files/manifest.h"
+#include "solver/step_problem.h"
 
 namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kProblemColumns[] = {
-    "scene",       "seed",          "step",    "friction",     "bodies", "contacts", "rows", "rows_bilateral",
-    "rows_normal", "rows_friction", "islands", "problem_hash", "dt_s",   "cfm",      "erp"};
-constexpr const char* kPartitionColumns[] = {"parts",          "max_part_bodies",    "cut_pairs",
-                                             "interface_rows", "interface_bodies",   "interface_cover_bodies",
-                                             "contiguous",     "part_mass_ratio_max"};
-constexpr const char* kResidualColumns[] = {"residual_m_per_s", "residual_bilateral_m_per_s",
-                                            "residual_normal_m_per_s", "residual_friction_m_per_s",
-                                            "residual_relative"};
-
-// The file a row speaks of: beside steps.csv, or where it was when it was read.
-fs::path problem_path(const fs::path& directory, const std::string& name) {
-  std::error_code error;
-  if (name == "-") return {};
-  const fs::path beside = directory / fs::path(name).filename();
-  if (fs::exists(beside, error)) return beside;
-  return fs::exists(name, error) ? fs::path(name) : fs::path();
+std::vector<std::string> header_of_program() {
+  std::vector<std::string> header;
+  for (const Column& column : columns()) header.push_back(column.name);
+  return header;
 }
 
-// One row against the row computed anew.
-class RowCheck {
- public:
-  RowCheck(const StepsTable& table, std::size_t row) : table_(table), row_(row) {}
+std::string first_difference(const std::vector<std::string>& found, const std::vector<std::string>& wanted) {
+  for (std::size_t i = 0; i < std::max(found.size(), wanted.size()); ++i) {
+    const std::string here = i < found.size() ? found[i] : "nothing",
+                      there = i < wanted.size() ? wanted[i] : "nothing";
+    if (here != there) return "; column " + std::to_string(i + 1) + " is " + here + ", allowed: " + there;
+  }
+  return "";
+}
 
-  // Texts must be the same, and numbers are printed so that equal ones are.
-  template <std::size_t N>
-  void same_cells(const StepRecord& found, const char* const (&columns)[N]) {
-    const std::vector<std::string> header = split_csv_line(csv_header());
-    const std::vector<std::string> cells = split_csv_line(csv_line(found));
-    for (const char* column : columns) {
-      std::string cell = cells[std::ranges::find(header, column) - header.begin()];
-      if (!cell.empty() && cell.back() == '\n') cell.pop_back();
-      note(table_.cell(row_, column) == cell, column, table_.cell(row_, column), cell);
+// The table where it can be read and has the columns of its schema.
+std::optional<StepsTable> check_header(const fs::path& path, const StoredManifest& manifest,
+                                       CheckList& list) {
+  std::optional<StepsTable> table;
+  std::string error;
+  try {
+    table.emplace(path);
+    error = first_difference(table->header(), manifest.columns);
+    if (error.empty() && manifest.steps_schema == kStepsSchema)
+      error = first_difference(table->header(), header_of_program());
+  } catch (const std::invalid_argument& wrong) {
+    error = std::string("; ") + wrong.what();
+  }
+  list.add(error.empty(), path.string(), "header and lines of its schema" + error);
+  if (!error.empty()) table.reset();
+  return table;
+}
+
+std::string key_of(const StepsTable& table, std::size_t row, bool is_replay) {
+  return row_key(table.cell(row, is_replay ? "problem_file" : "step"), table.cell(row, "partitioner"),
+                 table.cell(row, "refiner"), table.cell(row, "solver"));
+}
+
+// Rows that are too many, doubled, out of order or not there. Where all is well, row i is expected row i.
+bool check_keys(const StepsTable& table, const ExpectedRows& expected, const StoredManifest& manifest,
+                const std::string& subject, CheckList& list) {
+  std::map<std::string, std::size_t> place;
+  for (std::size_t i = 0; i < expected.count(); ++i) place.emplace(expected.key(i), i);
+  std::map<std::string, std::size_t> seen;
+  Findings findings;
+  std::size_t next = 0;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const std::string key = key_of(table, row, expected.is_replay());
+    const auto found = place.find(key);
+    const std::string line = StepsTable::line_of(row) + ": " + key;
+    const bool in_place = next < expected.count() && expected.key(next) == key;
+    const auto [earlier, is_new] = seen.emplace(key, row);
+    if (found == place.end()) {
+      findings.add(line + " is no row of this run");
+    } else if (!is_new && !in_place) {
+      findings.add(line + " repeats " + StepsTable::line_of(earlier->second));
+    } else if (!in_place && found->second < next) {
+      findings.add(line + " stands out of order");
+    }
+    if (found != place.end() && (in_place || found->second >= next))
+      next = (in_place ? next : found->second) + 1;
+  }
+  if (manifest.state == "complete")
+    for (const auto& [key, i] : place)
+      if (!seen.contains(key)) findings.add(key + " has no row");
+  if (findings.none() && manifest.state == "complete" && table.row_count() != expected.count())
+    findings.add(std::to_string(table.row_count()) + " rows, allowed: " + std::to_string(expected.count()));
+  list.add(findings.none(), subject,
+           std::to_string(table.row_count()) + " of " + std::to_string(expected.count()) +
+               " rows, each in its place" + findings.text());
+  return findings.none();
+}
+
+// Columns that only the problem file of a replayed row knows.
+const std::set<std::string> kOfProblemFile = {"scene",    "seed", "step", "time_s",
+                                              "friction", "dt_s", "cfm",  "erp"};
+// Columns that no replayed row has a value of.
+const std::set<std::string> kOfWorld = {"contact_cap_hits",   "ode_messages",  "max_penetration_m",
+                                        "potential_energy_j", "state_hash",    "velocity_spread_m_per_s",
+                                        "joint_drift_m",      "last_body_z_m", "t_collide_ms",
+                                        "t_extract_ms",       "t_predict_ms"};
+// Columns about what was done or found, beside those that were measured.
+const std::set<std::string> kOfSolve = {"status", "status_reason", "strategy", "kernel"};
+
+std::vector<std::string> columns_of_options(bool is_replay) {
+  std::vector<std::string> names;
+  for (const Column& column : columns()) {
+    const bool of_options = column.about != About::measured && !kOfSolve.contains(column.name);
+    const bool told =
+        is_replay ? (of_options && !kOfProblemFile.contains(column.name)) || kOfWorld.contains(column.name)
+                  : of_options;
+    if (told) names.push_back(column.name);
+  }
+  return names;
+}
+
+// As csv_line writes them, by column.
+std::map<std::string, std::string> cells_of(const StepRecord& row) {
+  static const std::vector<std::string> header = header_of_program();
+  std::string line = csv_line(row);
+  line.pop_back();
+  const std::vector<std::string> cells = split_csv_line(line);
+  std::map<std::string, std::string> by_column;
+  for (std::size_t i = 0; i < header.size(); ++i) by_column.emplace(header[i], cells[i]);
+  return by_column;
+}
+
+void check_options_in_rows(const StepsTable& table, const ExpectedRows& expected, const std::string& subject,
+                           CheckList& list) {
+  const std::vector<std::string> columns = columns_of_options(expected.is_replay());
+  Findings findings;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    StepRecord wanted = expected.row(row);
+    const std::string& status = table.cell(row, "status");
+    if (status == "skipped") {
+      wanted.problem_file = "-";
+      wanted.repeat_count = -1;
+    }
+    const auto cells = cells_of(wanted);
+    for (const std::string& column : columns) {
+      if (column == "repeat_count" && status != "skipped" && !has_result(status))
+        continue;  // ended by a failure
+      if (table.cell(row, column) != cells.at(column))
+        findings.add(StepsTable::line_of(row) + ": " + column + " = " + table.cell(row, column) +
+                     ", by the manifest " + cells.at(column));
     }
   }
-
-  void same_residuals(const ResidualReport& verdict) {
-    const double found[] = {verdict.residual_m_per_s, verdict.residual_bilateral_m_per_s,
-                            verdict.residual_normal_m_per_s, verdict.residual_friction_m_per_s,
-                            verdict.residual_relative};
-    for (std::size_t i = 0; i < std::size(found); ++i) {
-      const double stored = table_.number(row_, kResidualColumns[i]);
-      note(same_residual(stored, found[i]), kResidualColumns[i], table_.cell(row_, kResidualColumns[i]),
-           std::to_string(found[i]));
-    }
-    const std::string& status = table_.cell(row_, "status");
-    note(status != "ok" || verdict.exact, "status", status, "a residual above the limit");
-  }
-
-  void note(bool same, const std::string& column, const std::string& stored, const std::string& found) {
-    ++compared_;
-    if (!same) differences_ += "; " + column + " = " + stored + ", computed anew: " + found;
-  }
-
-  void finish(const std::string& subject, const std::string& text, CheckList& list) const {
-    list.add(differences_.empty(), subject,
-             text + ": " + std::to_string(compared_) + " columns" + differences_);
-  }
-
- private:
-  const StepsTable& table_;
-  std::size_t row_;
-  int compared_ = 0;
-  std::string differences_;
-};
-
-StepRecord row_of_file(const ProblemFile& file) {
-  StepRecord row;
-  row.scene = file.scene;
-  row.seed = file.seed;
-  row.step = file.step;
-  row.friction = file.friction_model;
-  row.dt_s = file.problem.h_s;
-  row.cfm = file.cfm;
-  row.erp = file.erp;
-  set_problem_columns(file.problem, row);
-  return row;
-}
-
-void check_solved_row(const StepsTable& table, std::size_t row, const ProblemFile& file,
-                      const std::string& label, StepRecord& found, RowCheck& check) {
-  const StoredSolution& solution = file.solutions.at(label);
-  check.same_residuals(judge(file.problem, solution.impulse));
-  const auto partition = file.partitions.find(label);
-  std::vector<int> parts;
-  if (partition != file.partitions.end()) {
-    parts = partition->second.part_of_body;
-    // Nothing can be counted with ids that are none; the check of the file has named them.
-    if (find_bad_part_id(parts) >= 0) return check.note(false, "parts", table.cell(row, "parts"), "-");
-    found.set_partition(measure_partition(body_graph_of(file.problem), parts));
-    check.same_cells(found, kPartitionColumns);
-    // A solver that says schur-rows and works on something else is found out by its interface.
-    const std::string& unknowns = table.cell(row, "interface_unknowns");
-    const std::string cut = std::to_string(found.interface_rows);
-    if (table.cell(row, "kernel") == "schur-rows")
-      check.note(unknowns == cut, "interface_unknowns", unknowns, cut);
-  }
-  const std::string hash = hex(solution_hash(solution.impulse, parts));
-  check.note(table.cell(row, "solution_hash") == hash, "solution_hash", table.cell(row, "solution_hash"),
-             hash);
-}
-
-void check_row(const StepsTable& table, std::size_t row, const ProblemFile& file, const fs::path& path,
-               const std::string& subject, CheckList& list) {
-  const std::string label = combination_label(table.cell(row, "partitioner"), table.cell(row, "refiner"),
-                                              table.cell(row, "solver"));
-  const bool solved = file.solutions.contains(label);
-  RowCheck check(table, row);
-  StepRecord found = row_of_file(file);
-  check.same_cells(found, kProblemColumns);
-  if (solved) check_solved_row(table, row, file, label, found, check);
-  check.finish(subject, label + " against the " + (solved ? "solution" : "problem") + " in " + path.string(),
-               list);
+  list.add(findings.none(), subject,
+           std::to_string(columns.size()) + " columns are those of the manifest's options" + findings.text());
 }
 
 void check_limits(const StepsTable& table, const std::string& subject, CheckList& list) {
   std::size_t ok = 0;
-  std::string wrong;
+  Findings wrong;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (table.cell(row, "status") != "ok") continue;
     ++ok;
     const double limit = kExactLimit * std::max(1.0, table.number(row, "largest_free_velocity_m_per_s"));
-    if (wrong.empty() && !(table.number(row, "residual_m_per_s") <= limit))
-      wrong = "; line " + std::to_string(row + 2) + " says ok with a residual of " +
-              table.cell(row, "residual_m_per_s") + " m/s";
+    if (!(table.number(row, "residual_m_per_s") <= limit))
+      wrong.add(StepsTable::line_of(row) + " says ok with a residual of " +
+                table.cell(row, "residual_m_per_s") + " m/s");
   }
-  list.add(wrong.empty(), subject,
+  list.add(wrong.none(), subject,
            std::to_string(ok) + " of " + std::to_string(table.row_count()) +
-               " rows say ok, all within the limit" + wrong);
+               " rows say ok, all within the limit" + wrong.text());
+}
+
+// What the options promise; nothing for options that no run can have.
+std::optional<ExpectedRows> check_options(const fs::path& directory, const StoredManifest& manifest,
+                                          CheckList& list) {
+  std::optional<ExpectedRows> expected;
+  std::string error;
+  try {
+    expected.emplace(manifest);
+  } catch (const std::invalid_argument& wrong) {
+    error = std::string("; ") + wrong.what();
+  }
+  list.add(expected.has_value(), (directory / kManifestFile).string(), "options of a run" + error);
+  return expected;
 }
 
 }  // namespace
 
-void check_steps_table(const fs::path& directory, CheckList& list) {
+void check_steps_table(const fs::path& directory, const StoredManifest& manifest, CheckList& list) {
   const fs::path path = directory / "steps.csv";
-  const StepsTable table(path);
-  check_limits(table, path.string(), list);
-  fs::path open;
-  ProblemFile file;
-  std::size_t without = 0;
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    const fs::path problem = problem_path(directory, table.cell(row, "problem_file"));
-    if (problem.empty() || table.cell(row, "status") == "skipped") {
-      ++without;
-      continue;
-    }
-    if (problem != open) file = read_problem_file(problem);
-    open = problem;
-    check_row(table, row, file, problem, path.string() + " line " + std::to_string(row + 2), list);
+  const std::string subject = path.string();
+  const std::optional<StepsTable> table = check_header(path, manifest, list);
+  if (!table) return;
+  if (table->header() != header_of_program()) {
+    check_limits(*table, subject, list);
+    return CheckList::note(subject, "has the columns of another schema; no more of its rows was checked");
   }
-  if (without > 0)
-    std::fprintf(stderr, "%s: %zu of %zu rows have no problem file to compare with\n", path.c_str(), without,
-                 table.row_count());
+  if (!check_cells(*table, subject, list)) return;
+  check_limits(*table, subject, list);
+  check_rows_alone(*table, subject, list);
+  const std::optional<ExpectedRows> expected = check_options(directory, manifest, list);
+  if (expected && check_keys(*table, *expected, manifest, subject, list)) {
+    check_options_in_rows(*table, *expected, subject, list);
+    check_rows_of_problems(*table, *expected, subject, list);
+    if (manifest.state == "complete") check_totals(*table, *expected, manifest, subject, list);
+  }
+  check_file_rows(directory, *table, manifest.option("write-solutions") == "true", list);
 }
 
 }  // namespace cleave

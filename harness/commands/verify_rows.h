@@ -4,13 +4,15 @@
 #include <filesystem>
 
 #include "harness/commands/verify_checks.h"
+#include "harness/files/manifest_reader.h"
 
 namespace cleave {
 
-// Every row that says ok lies within the judge's limit by its own numbers. Every row whose problem file is in
-// the directory, or where the row says it is, agrees with what is computed anew from that file: sizes,
-// islands and fingerprint of the problem, and where the file holds the row's solution, the judge's residuals,
-// the counts of the partition, the interface of schur-rows and the fingerprint of the solution.
-void check_steps_table(const std::filesystem::path& directory, CheckList& list);
+// It has the columns and the rows that the manifest promises, with its options in them; its cells agree with each
+// other and with the counts of the manifest; every row that says ok lies within the judge's limit by its own numbers.
+// Rows of record and replay agree with what is computed anew from their problem file (verify_file_rows.h).
+// results/README.md names the columns.
+void check_steps_table(const std::filesystem::path& directory, const StoredManifest& manifest,
+                       CheckList& list);
 
 }  // namespace cleave

@@ -1,6 +1,5 @@
 #include "harness/commands/verify_table.h"
 
-#include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <limits>
@@ -31,6 +30,9 @@ StepsTable::StepsTable(const std::filesystem::path& path) : file_(path.string())
   std::string line;
   if (!std::getline(file, line)) throw std::invalid_argument(file_ + ": cannot be read or has no header");
   header_ = split_csv_line(line);
+  for (const std::string& column : header_)
+    if (!place_.emplace(column, place_.size()).second)
+      throw std::invalid_argument(file_ + ": column " + column + " stands twice in the header");
   while (std::getline(file, line)) {
     rows_.push_back(split_csv_line(line));
     const std::string place = file_ + ": line " + std::to_string(rows_.size() + 1);
@@ -42,9 +44,9 @@ StepsTable::StepsTable(const std::filesystem::path& path) : file_(path.string())
 }
 
 const std::string& StepsTable::cell(std::size_t row, const std::string& column) const {
-  const auto found = std::ranges::find(header_, column);
-  if (found == header_.end()) throw std::invalid_argument(file_ + ": column " + column + " is missing");
-  return rows_[row][found - header_.begin()];
+  const auto found = place_.find(column);
+  if (found == place_.end()) throw std::invalid_argument(file_ + ": column " + column + " is missing");
+  return rows_[row][found->second];
 }
 
 double StepsTable::number(std::size_t row, const std::string& column) const {
@@ -52,7 +54,7 @@ double StepsTable::number(std::size_t row, const std::string& column) const {
   double value = std::numeric_limits<double>::quiet_NaN();
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size())
-    throw std::invalid_argument(file_ + ": line " + std::to_string(row + 2) + ": " + column + " = '" + text +
+    throw std::invalid_argument(file_ + ": " + line_of(row) + ": " + column + " = '" + text +
                                 "', allowed: a number");
   return value;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -9,18 +10,24 @@ namespace cleave {
 
 class StepsTable {
  public:
-  // Throws std::invalid_argument naming the file, the line and what is wrong: no header, a line with another
-  // number of cells than the header, a last line without its end.
+  // Throws std::invalid_argument naming the file, the line and what is wrong: no header, a column twice, a line with
+  // another number of cells than the header, a last line without its end.
   explicit StepsTable(const std::filesystem::path& path);
 
+  const std::vector<std::string>& header() const { return header_; }
   std::size_t row_count() const { return rows_.size(); }
-  // Throws std::invalid_argument naming the file and the column when there is none of this name.
+  // Throw std::invalid_argument naming the file and the column when there is none of this name, or the cell that is
+  // no number.
   const std::string& cell(std::size_t row, const std::string& column) const;
   double number(std::size_t row, const std::string& column) const;
+
+  // "line 7" of the file.
+  static std::string line_of(std::size_t row) { return "line " + std::to_string(row + 2); }
 
  private:
   std::string file_;
   std::vector<std::string> header_;
+  std::map<std::string, std::size_t> place_;  // of a column
   std::vector<std::vector<std::string>> rows_;
 };
 

@@ -209,11 +209,12 @@ const SceneEntry& scene_row(const Algorithm& scene) {
   return *std::ranges::find_if(scenes(), [&](const SceneEntry& row) { return row.name == scene.name; });
 }
 
-std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, int threads, const StepContext& context) {
+std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, const SolveOptions& options,
+                                        const StepContext& context) {
   if (std::unique_ptr<StepSolver> ode = make_ode_baseline(solver, context)) return ode;
-  return make_step_solver(solver, {.threads = threads});
+  return make_step_solver(solver, options);
 }
 
-bool uses_parts(const Algorithm& solver) { return make_solver(solver, 1, StepContext{})->uses_partition(); }
+bool uses_parts(const Algorithm& solver) { return make_solver(solver, {}, StepContext{})->uses_partition(); }
 
 }  // namespace cleave

@@ -70,8 +70,10 @@ std::string owners_of(const std::string& parameter);
 
 const SceneEntry& scene_row(const Algorithm& scene);
 
-// Throws std::invalid_argument for an unknown name. context: see ode_baselines.h; must outlive the solver.
-std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, int threads, const StepContext& context);
+// Throws std::invalid_argument for an unknown name. context: see ode_baselines.h; must outlive the solver. ODE's
+// own solvers cannot be stopped.
+std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, const SolveOptions& options,
+                                        const StepContext& context);
 
 // Whether it works on parts, so that partitioner and refiner matter to it.
 bool uses_parts(const Algorithm& solver);

@@ -93,11 +93,13 @@ void set_measures(const StepProblem& problem, const BodyGraph* graph, const Outc
 }  // namespace
 
 Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner, const Algorithm& solver,
-                         const RunOptions& options, const StepContext& context)
+                         const RunOptions& options, const StepContext& context, const std::atomic<bool>* stop)
     : name_{.solver = solver.text},
       solver_named_(solver),
       repeats_(options.repeats),
-      solver_(make_solver(solver, options.threads, context)) {
+      solve_options_{.threads = options.threads, .stop = stop},
+      context_(&context),
+      solver_(make_solver(solver, solve_options_, context)) {
   if (solver_->uses_partition()) {
     splitter_.emplace(partitioner, refiner, options.skip_small_islands);
     name_.partitioner = partitioner.text;
@@ -112,26 +114,28 @@ std::optional<Split> Combination::split(const StepProblem& problem, int step) co
 }
 
 Combination::Repeat Combination::repeat(const StepProblem& problem, int step) {
+  check_stop(solve_options_.stop);
   Repeat repeat;
   try {
     repeat.split = split(problem, step);
+    solve_parts(problem, solver_parts(repeat.split, problem), repeat.outcome);
   } catch (const CannotSplit& error) {
     repeat.outcome = unsolved(problem, SolveStatus::refused, error.what());
-    return repeat;
-  }
-  const std::vector<int> parts = solver_parts(repeat.split, problem);
-  Outcome& outcome = repeat.outcome;
-  outcome.solution.impulse = problem.warm_impulse;
-  outcome.solution.velocity.assign(problem.free_velocity.size(), 0.0);
-  try {
-    const CoreMeter meter;
-    outcome.summary = solver_->solve(problem, parts, outcome.solution);
-    outcome.cores = meter.stop();
-    outcome.status = outcome.summary.status;
   } catch (const std::bad_alloc&) {
-    outcome = unsolved(problem, SolveStatus::out_of_memory, "no memory for the solve");
+    solver_.reset();  // its scratch is memory that the next one may need
+    repeat.outcome = unsolved(problem, SolveStatus::out_of_memory, "no memory for the solve");
   }
   return repeat;
+}
+
+void Combination::solve_parts(const StepProblem& problem, std::span<const int> parts, Outcome& outcome) {
+  if (solver_ == nullptr) solver_ = make_solver(solver_named_, solve_options_, *context_);
+  outcome.solution.impulse = problem.warm_impulse;
+  outcome.solution.velocity.assign(problem.free_velocity.size(), 0.0);
+  const CoreMeter meter;
+  outcome.summary = solver_->solve(problem, parts, outcome.solution);
+  outcome.cores = meter.stop();
+  outcome.status = outcome.summary.status;
 }
 
 void Combination::set_names(StepRecord& row) const {
@@ -185,22 +189,29 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
 }
 
 ConvergedBounds Combination::converge_bounds(StepProblem& problem, int step) {
+  check_stop(solve_options_.stop);
   Solution solution{problem.warm_impulse, {}};
+  // Where this fails, the solve that follows says why.
   try {
+    if (solver_ == nullptr) solver_ = make_solver(solver_named_, solve_options_, *context_);
     return converge_friction_bounds(problem, *solver_, solver_parts(split(problem, step), problem), solution);
   } catch (const CannotSplit&) {
-    return {};  // the solve that follows says why
+    return {};
+  } catch (const std::bad_alloc&) {
+    solver_.reset();
+    return {};
   }
 }
 
-std::vector<Combination> make_combinations(const RunOptions& options, const StepContext& context) {
+std::vector<Combination> make_combinations(const RunOptions& options, const StepContext& context,
+                                           const std::atomic<bool>* stop) {
   std::vector<Combination> splitting, whole;
   for (const Algorithm& partitioner : options.partitioners)
     for (const Algorithm& refiner : options.refiners)
       for (const Algorithm& solver : options.solvers)
-        if (uses_parts(solver)) splitting.emplace_back(partitioner, refiner, solver, options, context);
+        if (uses_parts(solver)) splitting.emplace_back(partitioner, refiner, solver, options, context, stop);
   for (const Algorithm& solver : options.solvers)
-    if (!uses_parts(solver)) whole.emplace_back(Algorithm{}, Algorithm{}, solver, options, context);
+    if (!uses_parts(solver)) whole.emplace_back(Algorithm{}, Algorithm{}, solver, options, context, stop);
   std::ranges::move(whole, std::back_inserter(splitting));
   return splitting;
 }
@@ -223,8 +234,9 @@ std::vector<Outcome> measure_all(std::span<Combination> combinations, const Step
   return outcomes;
 }
 
-Combination make_advancing_combination(const RunOptions& options, const StepContext& context) {
-  return {options.partitioners.front(), options.refiners.front(), options.advance, options, context};
+Combination make_advancing_combination(const RunOptions& options, const StepContext& context,
+                                       const std::atomic<bool>* stop) {
+  return {options.partitioners.front(), options.refiners.front(), options.advance, options, context, stop};
 }
 
 }  // namespace cleave

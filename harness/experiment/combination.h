@@ -4,6 +4,7 @@
 // warm start: nothing passes between combinations.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <span>
@@ -49,9 +50,10 @@ struct Outcome {
 class Combination {
  public:
   // Where the solver ignores parts partitioner and refiner are not made. context: what solvers that are ODE
-  // itself read the step from; must outlive the combination.
+  // itself read the step from. stop, where given: once true no solve begins and the one at hand ends with
+  // SolveStopped, out of every function below. Both must outlive the combination.
   Combination(const Algorithm& partitioner, const Algorithm& refiner, const Algorithm& solver,
-              const RunOptions& options, const StepContext& context);
+              const RunOptions& options, const StepContext& context, const std::atomic<bool>* stop = nullptr);
 
   const CombinationName& name() const { return name_; }
 
@@ -63,7 +65,7 @@ class Combination {
   void set_names(StepRecord& row) const;
 
   // Splits and solves once from the problem's warm start. step: of the run. A partitioner that cannot split
-  // this step makes the outcome `refused`.
+  // this step makes the outcome `refused`, a lack of memory `out_of_memory`; the next solve begins afresh.
   Outcome solve(const StepProblem& problem, int step);
 
   // Splits and solves options.repeats times from the problem's warm start, at the row's step, and fills the
@@ -82,17 +84,21 @@ class Combination {
   };
   std::optional<Split> split(const StepProblem& problem, int step) const;
   Repeat repeat(const StepProblem& problem, int step);
+  void solve_parts(const StepProblem& problem, std::span<const int> parts, Outcome& outcome);
 
   CombinationName name_;
   Algorithm partitioner_, refiner_, solver_named_;
   int repeats_;
-  std::unique_ptr<StepSolver> solver_;
+  SolveOptions solve_options_;
+  const StepContext* context_;
+  std::unique_ptr<StepSolver> solver_;  // none after a solve without memory: the next one makes it anew
   std::optional<Splitter> splitter_;
 };
 
 // All combinations of a run in the order of its rows: partitioner, then refiner, then solver; solvers that
 // ignore parts come last, once each.
-std::vector<Combination> make_combinations(const RunOptions& options, const StepContext& context);
+std::vector<Combination> make_combinations(const RunOptions& options, const StepContext& context,
+                                           const std::atomic<bool>* stop = nullptr);
 
 // The names of make_combinations, in its order.
 std::vector<CombinationName> combination_names(const RunOptions& options);
@@ -104,6 +110,7 @@ std::vector<Outcome> measure_all(std::span<Combination> combinations, const Step
                                  std::span<StepRecord> rows);
 
 // The solver of --advance. Where it needs parts it gets those of the run's first partitioner and refiner.
-Combination make_advancing_combination(const RunOptions& options, const StepContext& context);
+Combination make_advancing_combination(const RunOptions& options, const StepContext& context,
+                                       const std::atomic<bool>* stop = nullptr);
 
 }  // namespace cleave

@@ -66,10 +66,10 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
       common.max_penetration_m = deepest_m(contacts);
       measured = measure(combinations, problem, common);
     }
-    if (observe_) observe_({context_, problem, step, measured.rows, measured.outcomes});
 
     // One solution moves the bodies, and its impulses are where the next step starts from.
     const Outcome advance = advancing.solve(problem, step);
+    if (observe_) observe_({context_, problem, step, measured.rows, measured.outcomes});
     if (advance.can_advance()) {
       world.advance(advance.verdict.velocity, options_.extract.h_s);
       memory.remember(contacts, problem, advance.solution.impulse);
@@ -77,6 +77,8 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
 
     finish_rows(measured, world, advance);
     record(measured.rows, write);
+    if (!measured.rows.empty()) ++summary_.measured_steps;
+    if (!measured.rows.empty() && common.contacts > 0) ++summary_.measured_with_contacts;
     ++summary_.steps;
     if (advance.status != SolveStatus::ok) ++summary_.inexact_advances;
     progress(summary_.steps, total_steps());
@@ -90,23 +92,31 @@ Simulation::Simulation(const RunOptions& options, const std::atomic<bool>& stop,
       stop_(stop),
       observe_(std::move(observe)),
       run_row_(run_columns(options)),
-      combinations_(make_combinations(options, context_)) {}
+      combinations_(make_combinations(options, context_, &stop)) {}
 
 RunSummary Simulation::run(const RowSink& write, const Progress& progress) {
   Stopwatch watch;
-  start_threads(options_.threads);
-  if (options_.mode == RunMode::lockstep) {
-    Combination advancing = make_advancing_combination(options_, context_);
-    run_world(combinations_, advancing, write, progress);
-  } else {
-    // Equal solvers that advance: one does not see what the other keeps in its scratch.
-    std::vector<Combination> advancing = make_combinations(options_, context_);
-    for (std::size_t i = 0; i < combinations_.size(); ++i)
-      run_world({&combinations_[i], 1}, advancing[i], write, progress);
+  try {
+    run_worlds(write, progress);
+  } catch (const SolveStopped&) {
+    // The rows of the step at hand are not all there, so none is written.
   }
   summary_.wall_s = watch.lap_ms() / 1000;
   summary_.interrupted = stop_;
   return summary_;
+}
+
+void Simulation::run_worlds(const RowSink& write, const Progress& progress) {
+  start_threads(options_.threads);
+  if (options_.mode == RunMode::lockstep) {
+    Combination advancing = make_advancing_combination(options_, context_, &stop_);
+    run_world(combinations_, advancing, write, progress);
+  } else {
+    // Equal solvers that advance: one does not see what the other keeps in its scratch.
+    std::vector<Combination> advancing = make_combinations(options_, context_, &stop_);
+    for (std::size_t i = 0; i < combinations_.size(); ++i)
+      run_world({&combinations_[i], 1}, advancing[i], write, progress);
+  }
 }
 
 StepRecord Simulation::blank_row(int step) const {
@@ -139,8 +149,6 @@ Simulation::Measured Simulation::measure(std::span<Combination> combinations, co
                                          const StepRecord& common) {
   Measured measured{std::vector<StepRecord>(combinations.size(), common), {}};
   measured.outcomes = measure_all(combinations, problem, summary_.measured_steps, measured.rows);
-  ++summary_.measured_steps;
-  if (common.contacts > 0) ++summary_.measured_with_contacts;
   return measured;
 }
 

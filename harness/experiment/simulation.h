@@ -28,13 +28,13 @@ struct ObservedStep {
 class Simulation {
  public:
   using Progress = std::function<void(int steps_done, int steps_total)>;
-  // Sees every step before the world is advanced.
+  // Sees every step whose solves are done, before the world is advanced.
   using Observer = std::function<void(const ObservedStep& step)>;
   // Takes the rows of a measured step when the step is over.
   using RowSink = std::function<void(std::span<const StepRecord> rows)>;
 
-  // Makes every solver, partitioner and refiner, without touching ODE or the disk. stop: once true, the run
-  // ends after the step at hand.
+  // Makes every solver, partitioner and refiner, without touching ODE or the disk. stop: once true, no solve
+  // begins, the one at hand ends at its next iteration, and the step at hand leaves no row.
   Simulation(const RunOptions& options, const std::atomic<bool>& stop, Observer observe = {});
   Simulation(const Simulation&) = delete;  // combinations look at its context
   Simulation& operator=(const Simulation&) = delete;
@@ -54,6 +54,7 @@ class Simulation {
     std::vector<Outcome> outcomes;
   };
 
+  void run_worlds(const RowSink& write, const Progress& progress);
   void run_world(std::span<Combination> combinations, Combination& advancing, const RowSink& write,
                  const Progress& progress);
   void predict_bounds(StepProblem& problem, Combination& advancing, int step);

@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "harness/files/dense_speed.h"
+#include "harness/files/hdf5_types.h"
 
 // Written by build_info.cmake; a build without it says "unknown".
 #if __has_include("cleave_build_info.h")
@@ -81,6 +82,7 @@ std::string version_text(const BuildInfo& build) {
 
 std::vector<std::pair<std::string, std::string>> library_versions() {
   unsigned hdf5[3];
+  silence_hdf5();
   H5get_libversion(&hdf5[0], &hdf5[1], &hdf5[2]);
   return {
       {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
@@ -99,8 +101,7 @@ std::array<double, 3> load_average() {
 
 MachineInfo machine_info() {
   MachineInfo info;
-  char host[256] = "";
-  info.host = ::gethostname(host, sizeof host - 1) == 0 ? host : "unknown";
+  info.host = host_name();
   info.cpu_model = cpu_model();
   info.cores = omp_get_num_procs();
   info.governor = governor();
@@ -110,6 +111,11 @@ MachineInfo machine_info() {
   info.dense_kernel = dense_kernel();
   info.dense_gflop_per_s = dense_gflop_per_s();
   return info;
+}
+
+std::string host_name() {
+  char host[256] = "";
+  return ::gethostname(host, sizeof host - 1) == 0 ? host : "unknown";
 }
 
 std::string utc_now() {

@@ -42,6 +42,8 @@ struct MachineInfo {
 };
 MachineInfo machine_info();  // measures the dense kernel, about 10 ms
 
+std::string host_name();  // "unknown" where the system does not say
+
 // Now, as 2024-01-31T12:00:00Z.
 std::string utc_now();
 

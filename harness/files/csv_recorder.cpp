@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
 
 namespace cleave {
 namespace {
@@ -24,16 +25,20 @@ CsvRecorder::CsvRecorder(std::filesystem::path path, const std::string& header) 
 
 CsvRecorder::~CsvRecorder() { ::close(file_); }
 
-// One write call for all lines. A short one happens only where the disk is full; the rest is then taken back
-// so that no half line stays behind.
+// One write call for all lines. A short one happens only where the disk is full, and the next one says why; what
+// was written is then taken back so that no half line stays behind.
 void CsvRecorder::append(const std::string& lines) {
   if (lines.empty()) return;
   const off_t begin = ::lseek(file_, 0, SEEK_CUR);
-  ssize_t written;
-  do written = ::write(file_, lines.data(), lines.size());
-  while (written < 0 && errno == EINTR);
-  if (written == static_cast<ssize_t>(lines.size())) return;
-  const int error = written < 0 ? errno : ENOSPC;
+  std::string_view left = lines;
+  while (!left.empty()) {
+    const ssize_t written = ::write(file_, left.data(), left.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) break;
+    left.remove_prefix(static_cast<std::size_t>(written));
+  }
+  if (left.empty()) return;
+  const int error = errno;
   if (::ftruncate(file_, begin) == 0) ::lseek(file_, begin, SEEK_SET);
   fail(path_, error);
 }

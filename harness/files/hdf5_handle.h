@@ -25,6 +25,9 @@ class Hdf5Handle {
   bool valid() const { return id_ >= 0; }
   hid_t id() const { return id_; }
 
+  // Leaves the object open for good.
+  void abandon() { id_ = -1; }
+
   // Whether closing went well: the last data of a file reach the disk only then.
   bool close() {
     const hid_t id = std::exchange(id_, -1);

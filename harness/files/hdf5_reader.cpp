@@ -1,11 +1,17 @@
 #include "harness/files/hdf5_reader.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 
+#include "harness/base/printable_text.h"
+#include "harness/files/hdf5_storage.h"
+
 namespace cleave {
 namespace {
+
+constexpr std::size_t kMostTextBytes = 1 << 16;  // a message of an object header holds no more
 
 Hdf5Handle type_of_attribute(const Hdf5Handle& attribute) { return {H5Aget_type(attribute.id()), H5Tclose}; }
 
@@ -18,6 +24,8 @@ std::string type_text(hid_t type) {
       return bits + (H5Tget_sign(type) == H5T_SGN_NONE ? "unsigned integer" : "signed integer");
     case H5T_STRING:
       return "text";
+    case H5T_REFERENCE:
+      return "object reference";
     default:
       return "neither number nor text";
   }
@@ -60,6 +68,7 @@ Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : file_(path.string())
   std::error_code error;
   if (!std::filesystem::exists(path, error)) fail("no such file");
   if (!std::filesystem::is_regular_file(path, error)) fail("is no file");
+  size_ = std::filesystem::file_size(path, error);
   const htri_t is_hdf5 = H5Fis_hdf5(path.c_str());
   handle_ = Hdf5Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (handle_.valid()) return;
@@ -68,8 +77,16 @@ Hdf5Reader::Hdf5Reader(const std::filesystem::path& path) : file_(path.string())
 
 void Hdf5Reader::fail(const std::string& text) const { throw std::invalid_argument(file_ + ": " + text); }
 
+// What a link leads to may lie in another file, or nowhere.
 bool Hdf5Reader::has(const std::string& name) const {
-  return H5Lexists(handle_.id(), name.c_str(), H5P_DEFAULT) > 0;
+  if (H5Lexists(handle_.id(), name.c_str(), H5P_DEFAULT) <= 0) return false;
+  H5L_info_t link;
+  if (H5Lget_info(handle_.id(), name.c_str(), &link, H5P_DEFAULT) < 0)
+    fail(full(name) + " cannot be opened: the file is damaged");
+  if (link.type != H5L_TYPE_HARD)
+    fail(full(name) + " = " + (link.type == H5L_TYPE_SOFT ? "soft link" : "external link") +
+         ", allowed: a dataset or group in its place");
+  return true;
 }
 
 bool Hdf5Reader::has_attribute(const std::string& name) const {
@@ -80,20 +97,31 @@ Hdf5Reader Hdf5Reader::group(const std::string& name) const {
   if (!has(name)) fail("group " + full(name) + " is missing");
   Hdf5Handle group(H5Gopen2(handle_.id(), name.c_str(), H5P_DEFAULT), H5Gclose);
   if (!group.valid()) fail(full(name) + " cannot be opened as a group");
-  return {file_, full(name) + "/", std::move(group)};
+  return {file_, full(name) + "/", std::move(group), size_};
 }
 
 std::vector<std::string> Hdf5Reader::names() const {
   std::vector<std::string> names;
   if (H5Literate(handle_.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_name, &names) < 0)
     fail((prefix_.empty() ? "contents" : prefix_) + " cannot be listed: the file is damaged");
+  check_names(names);
   return names;
+}
+
+// They stand in lines of output.
+void Hdf5Reader::check_names(const std::vector<std::string>& names) const {
+  for (const std::string& name : names)
+    if (!is_printable_utf8(name))
+      fail("name in " + prefix_ + " = \"" + printable(name) +
+           "\", allowed: printable UTF-8 text without control characters");
 }
 
 Hdf5Handle Hdf5Reader::open_dataset(const std::string& name) const {
   if (!has(name)) fail("dataset " + full(name) + " is missing");
   Hdf5Handle dataset(H5Dopen2(handle_.id(), name.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset.valid()) fail(full(name) + " cannot be opened as a dataset");
+  const std::string error = find_storage_error(dataset, full(name), size_);
+  if (!error.empty()) fail(error);
   return dataset;
 }
 
@@ -177,10 +205,16 @@ void Hdf5Reader::attribute(const std::string& name, std::string& value) const {
     H5free_memory(text);
     return;
   }
-  std::vector<char> text(H5Tget_size(type.id()) + 1, '\0');
+  const std::size_t size = H5Tget_size(type.id());
+  if (size > kMostTextBytes)
+    fail("size of attribute " + full(name) + " = " + std::to_string(size) + ", allowed: 1 to " +
+         std::to_string(kMostTextBytes));
+  std::string text(size, '\0');
   read_attribute(attribute, name, type.id(), text.data());
-  value = text.data();
-  if (H5Tget_strpad(type.id()) == H5T_STR_SPACEPAD) value.erase(value.find_last_not_of(' ') + 1);
+  const H5T_str_t padding = H5Tget_strpad(type.id());
+  if (padding == H5T_STR_NULLTERM) text.resize(std::min(text.find('\0'), size));
+  text.erase(text.find_last_not_of(padding == H5T_STR_SPACEPAD ? ' ' : '\0') + 1);
+  value = text;
 }
 
 void Hdf5Reader::attribute(const std::string& name, double& value) const {
@@ -228,6 +262,7 @@ std::vector<std::string> Hdf5Reader::attribute_names() const {
   std::vector<std::string> names;
   if (H5Aiterate2(handle_.id(), H5_INDEX_NAME, H5_ITER_INC, nullptr, collect_attribute, &names) < 0)
     fail("attributes of " + prefix_ + " cannot be listed: the file is damaged");
+  check_names(names);
   return names;
 }
 

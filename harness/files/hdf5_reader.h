@@ -6,7 +6,9 @@
 //     rocks.h5: solution/a/impulse cannot be read: the file is damaged
 // An array must have the element type asked for, in either byte order, or one that converts without loss:
 // 32-bit floats where 64-bit ones are asked for, and signed integers of 32 and 64 bits for any integers, each
-// of which must fit. Nothing else is converted.
+// of which must fit. Nothing else is converted. Links and data that lead out of the file are refused, and so are arrays
+// larger than the file can hold, before room is made for them. All the same a damaged file can crash the library
+// (isolated_read.h).
 #pragma once
 
 #include <cstdint>
@@ -60,8 +62,10 @@ class Hdf5Reader {
   std::string full(const std::string& name) const { return prefix_ + name; }
 
  private:
-  Hdf5Reader(std::string file, std::string prefix, Hdf5Handle handle)
-      : file_(std::move(file)), prefix_(std::move(prefix)), handle_(std::move(handle)) {}
+  Hdf5Reader(std::string file, std::string prefix, Hdf5Handle handle, std::uintmax_t size)
+      : file_(std::move(file)), prefix_(std::move(prefix)), handle_(std::move(handle)), size_(size) {}
+
+  void check_names(const std::vector<std::string>& names) const;
 
   Hdf5Handle open_dataset(const std::string& name) const;
   Hdf5Shape shape_of(const Hdf5Handle& dataset, const std::string& name) const;
@@ -78,6 +82,7 @@ class Hdf5Reader {
   std::string file_;
   std::string prefix_;  // "" or "solution/a/"
   Hdf5Handle handle_;
+  std::uintmax_t size_ = 0;  // bytes of the file
 };
 
 }  // namespace cleave

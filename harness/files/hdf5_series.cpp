@@ -6,12 +6,24 @@
 #include <utility>
 
 namespace cleave {
+namespace {
+
+// What is added at the end is never looked at again. Left to itself the library keeps up to a megabyte of written chunks for
+// every array. (It forgets what one array was told when the file changes its mode.)
+void write_chunks_at_once(const Hdf5Handle& access) {
+  constexpr std::size_t kSlots = 1, kBytes = 0;
+  constexpr double kDropWrittenFirst = 1;
+  H5Pset_cache(access.id(), 0, kSlots, kBytes, kDropWrittenFirst);
+}
+
+}  // namespace
 
 Hdf5SeriesFile::Hdf5SeriesFile(const std::filesystem::path& path) : file_(path.string()) {
   silence_hdf5();
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   // The mode needs the format of HDF5 1.10; a later one would shut out its readers.
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110);
+  write_chunks_at_once(access);
   errno = 0;
   handle_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
   if (!handle_.valid()) fail("");
@@ -26,10 +38,20 @@ void Hdf5SeriesFile::start() {
   if (H5Fstart_swmr_write(handle_.id()) < 0) fail("");
 }
 
+Hdf5SeriesFile::~Hdf5SeriesFile() {
+  if (failed_) handle_.abandon();
+}
+
 // errno is that of the last system call inside the library, where there was one.
 void Hdf5SeriesFile::fail(const std::string& name) const {
+  failed_ = true;
   const std::string reason = errno != 0 ? std::string(": ") + std::strerror(errno) : "";
   throw std::runtime_error(file_ + ": " + (name.empty() ? "" : name + " ") + "cannot be written" + reason);
+}
+
+void Hdf5SeriesFile::close() {
+  errno = 0;
+  if (!handle_.close()) fail("");
 }
 
 Hdf5SeriesDataset::Hdf5SeriesDataset(const Hdf5SeriesFile& file, std::string name, const Hdf5Shape& entry,
@@ -54,6 +76,15 @@ Hdf5SeriesDataset::Hdf5SeriesDataset(const Hdf5SeriesFile& file, std::string nam
                                    properties.id(), H5P_DEFAULT),
                         H5Dclose);
   if (!dataset_.valid()) file_.fail(name_);
+}
+
+Hdf5SeriesDataset::~Hdf5SeriesDataset() {
+  if (file_.failed()) dataset_.abandon();
+}
+
+void Hdf5SeriesDataset::close() {
+  errno = 0;
+  if (!dataset_.close()) file_.fail(name_);
 }
 
 void Hdf5SeriesDataset::append(const void* values, std::size_t entries) {

@@ -27,11 +27,15 @@ class Hdf5Series {
  public:
   virtual ~Hdf5Series() = default;
   virtual void sync() = 0;
+  virtual void close() = 0;  // before the file is closed
 };
 
 class Hdf5SeriesFile {
  public:
   explicit Hdf5SeriesFile(const std::filesystem::path& path);  // an existing file is replaced
+  ~Hdf5SeriesFile();
+  Hdf5SeriesFile(const Hdf5SeriesFile&) = delete;
+  Hdf5SeriesFile& operator=(const Hdf5SeriesFile&) = delete;
 
   // The root group, for attributes, arrays of fixed size and groups. Must be gone before start().
   Hdf5Writer root() const;
@@ -39,12 +43,18 @@ class Hdf5SeriesFile {
   // Ends the definition of the file; only then may series be synced.
   void start();
 
+  // Ends the file, whose series are closed. Only now has the library written all of it.
+  void close();
+
   hid_t id() const { return handle_.id(); }
   [[noreturn]] void fail(const std::string& name) const;
+  bool failed() const { return failed_; }
 
  private:
   std::string file_;
   Hdf5Handle handle_;
+  // The library crashes in closing what it could not write, so that is left open.
+  mutable bool failed_ = false;
 };
 
 // The part of a series that does not depend on its type of number.
@@ -52,7 +62,11 @@ class Hdf5SeriesDataset {
  public:
   Hdf5SeriesDataset(const Hdf5SeriesFile& file, std::string name, const Hdf5Shape& entry,
                     std::size_t chunk_entries, const Hdf5Element& element);
+  ~Hdf5SeriesDataset();
+  Hdf5SeriesDataset(const Hdf5SeriesDataset&) = delete;
+  Hdf5SeriesDataset& operator=(const Hdf5SeriesDataset&) = delete;
   void append(const void* values, std::size_t entries);
+  void close();
 
  private:
   const Hdf5SeriesFile& file_;
@@ -85,6 +99,7 @@ class Hdf5SeriesOf : public Hdf5Series {
     dataset_.append(waiting_.data(), waiting_.size() / entry_size_);
     waiting_.clear();
   }
+  void close() override { dataset_.close(); }
 
  private:
   Hdf5SeriesDataset dataset_;

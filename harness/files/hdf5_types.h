@@ -46,8 +46,12 @@ constexpr const Hdf5Element& hdf5_element(int) { return kHdf5Int; }
 constexpr const Hdf5Element& hdf5_element(std::uint8_t) { return kHdf5Byte; }
 constexpr const Hdf5Element& hdf5_element(RowKind) { return kHdf5Byte; }
 
-// Keeps the library from printing; errors are ours to tell.
-inline void silence_hdf5() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+// Keeps the library from printing, errors are ours to tell, and from an exit handler, which would write once more what
+// could not be written and end in a crash. Call it before any other function of the library, even its version.
+inline void silence_hdf5() {
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 // "(10, 12)"
 inline std::string hdf5_shape_text(std::span<const std::size_t> shape) {

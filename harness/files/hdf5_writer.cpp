@@ -1,16 +1,27 @@
 #include "harness/files/hdf5_writer.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
 
+#include "harness/files/whole_file.h"
+
 namespace cleave {
+namespace {
+
+constexpr std::size_t kMemoryStep = std::size_t{1} << 20;  // by which the file grows in memory
+
+}  // namespace
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : file_(path.string()) {
   silence_hdf5();
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  const bool on_disk = false;
   errno = 0;
-  handle_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+  if (H5Pset_fapl_core(access.id(), kMemoryStep, on_disk) >= 0)
+    handle_ = Hdf5Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
   if (!handle_.valid()) fail("");
 }
 
@@ -56,12 +67,14 @@ void Hdf5Writer::write_attribute(const std::string& name, hid_t file_type, hid_t
   if (!attribute.valid() || H5Awrite(attribute.id(), memory_type, value) < 0) fail(name);
 }
 
+// A text of fixed length lies where the attribute does; one of variable length would lie in a heap of the file, in which
+// the library follows damaged pointers.
 void Hdf5Writer::attribute(const std::string& name, const std::string& value) const {
   const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
-  H5Tset_size(type.id(), H5T_VARIABLE);
+  H5Tset_size(type.id(), std::max<std::size_t>(value.size(), 1));
+  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
   H5Tset_cset(type.id(), H5T_CSET_UTF8);
-  const char* text = value.c_str();
-  write_attribute(name, type.id(), type.id(), &text);
+  write_attribute(name, type.id(), type.id(), value.c_str());
 }
 
 void Hdf5Writer::attribute(const std::string& name, double value) const {
@@ -81,9 +94,20 @@ void Hdf5Writer::attribute(const std::string& name, bool value) const {
   write_attribute(name, H5T_STD_U8LE, H5T_NATIVE_UINT8, &byte);
 }
 
-void Hdf5Writer::close() {
+std::string Hdf5Writer::image() const {
   errno = 0;
+  if (H5Fflush(handle_.id(), H5F_SCOPE_LOCAL) < 0) fail("");
+  const ssize_t size = H5Fget_file_image(handle_.id(), nullptr, 0);
+  if (size < 0) fail("");
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(handle_.id(), bytes.data(), bytes.size()) != size) fail("");
+  return bytes;
+}
+
+void Hdf5Writer::close() {
+  const std::string bytes = image();
   if (!handle_.close()) fail("");
+  write_whole_file(file_, bytes);
 }
 
 }  // namespace cleave

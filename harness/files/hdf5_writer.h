@@ -1,5 +1,6 @@
 // Writes arrays, attributes and groups into a new HDF5 file. Equal contents give equal bytes: no time is
-// kept.
+// kept. The file grows in memory and goes to disk as a whole (whole_file.h): the library, which does not get over a
+// failed write, never meets a full disk.
 //
 // Errors are std::runtime_error of one line: "rocks.h5: jacobian cannot be written: No space left on device".
 #pragma once
@@ -31,17 +32,18 @@ class Hdf5Writer {
     write_array(name, shape, hdf5_element(Number{}), values.data(), values.size());
   }
 
-  void attribute(const std::string& name, const std::string& value) const;  // UTF-8, variable length
+  void attribute(const std::string& name, const std::string& value) const;  // UTF-8, fixed length
   void attribute(const std::string& name, double value) const;
   void attribute(const std::string& name, int value) const;
   void attribute(const std::string& name, std::uint64_t value) const;
   void attribute(const std::string& name, bool value) const;  // 8-bit 0 or 1
 
-  // Ends the file. Its groups must be gone. Only now are all data with the system.
+  // Ends the file and writes it. Its groups must be gone.
   void close();
 
  private:
   [[noreturn]] void fail(const std::string& name) const;
+  std::string image() const;  // the bytes of the file
   void write_array(const std::string& name, const Hdf5Shape& shape, const Hdf5Element& element,
                    const void* values, std::size_t count) const;
   void write_attribute(const std::string& name, hid_t file_type, hid_t memory_type, const void* value) const;

@@ -18,6 +18,7 @@
 namespace cleave {
 
 constexpr const char* kManifestSchema = "cleave-run-1";
+inline constexpr const char* kManifestFile = "manifest.json";
 
 // What is known before the work begins.
 struct WorkDescription {
@@ -26,7 +27,9 @@ struct WorkDescription {
   std::string run_id;
   std::vector<OptionValue> options;  // all of the command, with their values
   std::vector<NamedAlgorithm> algorithms;
+  std::string steps_schema;  // what the columns of steps.csv mean
   std::vector<Column> columns;
+  std::vector<std::string> files;  // that the command may leave beside manifest and checksums
   std::vector<std::pair<std::string, std::string>> libraries;  // beside those of build_info.h
 };
 
@@ -41,7 +44,7 @@ class Manifest {
   Manifest(std::filesystem::path path, WorkDescription description);
 
   // Does the work between the two writings. When the work throws, the manifest says "failed" and why, and the
-  // exception goes on.
+  // exception goes on. Where a full disk does not take the second writing, "failed" alone stands in the first.
   void around(const std::function<WorkResult()>& work);
 
  private:

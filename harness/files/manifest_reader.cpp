@@ -1,6 +1,8 @@
 #include "harness/files/manifest_reader.h"
 
+#include <algorithm>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -13,7 +15,7 @@
 namespace cleave {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;  // run ids are fingerprints of the options in their order
 
 [[noreturn]] void reject(const std::filesystem::path& path, const std::string& text) {
   throw std::invalid_argument(path.string() + ": " + text);
@@ -54,24 +56,77 @@ std::optional<std::string> option_text(const json& value) {
   return joined(items, "\n");
 }
 
-}  // namespace
+OptionKind kind_of(const json& value) {
+  if (value.is_boolean()) return OptionKind::flag;
+  if (value.is_number()) return OptionKind::number;
+  return value.is_array() ? OptionKind::lines : OptionKind::text;
+}
 
-std::map<std::string, std::string> read_manifest_options(const std::filesystem::path& path,
-                                                         const std::string& command) {
-  const json manifest = parse(path);
-  if (!manifest.is_object()) reject(path, "holds no JSON object; a manifest.json is wanted");
-  require_text(path, manifest, "schema", kManifestSchema);
-  require_text(path, manifest, "command", command);
+std::vector<OptionValue> read_options(const std::filesystem::path& path, const json& manifest) {
   const auto options = manifest.find("options");
   if (options == manifest.end() || !options->is_object()) reject(path, "options are missing");
-  std::map<std::string, std::string> texts;
+  std::vector<OptionValue> values;
   for (const auto& [name, value] : options->items()) {
     const std::optional<std::string> text = option_text(value);
     if (!text)
       reject(path, "option " + name + ": allowed are text, number, true, false, null, list of texts");
-    if (!text->empty()) texts[name] = *text;
+    values.push_back({name, kind_of(value), *text});
   }
+  return values;
+}
+
+NamedAlgorithm read_algorithm(const json& value) {
+  return {value.at("kind"),
+          value.at("text"),
+          value.at("name"),
+          value.at("parameters").get<std::map<std::string, std::string>>(),
+          {}};
+}
+
+json read_object(const std::filesystem::path& path) {
+  json manifest = parse(path);
+  if (!manifest.is_object()) reject(path, "holds no JSON object; a manifest.json is wanted");
+  require_text(path, manifest, "schema", kManifestSchema);
+  return manifest;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> read_manifest_options(const std::filesystem::path& path,
+                                                         const std::string& command) {
+  const json manifest = read_object(path);
+  require_text(path, manifest, "command", command);
+  std::map<std::string, std::string> texts;
+  for (const OptionValue& value : read_options(path, manifest))
+    if (!value.text.empty()) texts[value.name] = value.text;
   return texts;
+}
+
+std::string StoredManifest::option(const std::string& name) const {
+  const auto found = std::ranges::find(options, name, &OptionValue::name);
+  return found == options.end() ? "" : found->text;
+}
+
+StoredManifest read_manifest(const std::filesystem::path& path) {
+  const json manifest = read_object(path);
+  StoredManifest stored;
+  stored.options = read_options(path, manifest);
+  try {
+    stored.state = manifest.at("state");
+    stored.command = manifest.at("command");
+    stored.run_id = manifest.at("run_id");
+    stored.steps_schema = manifest.value("steps_schema", "");
+    const json nothing = json::object();
+    const json algorithms = manifest.value("algorithms", nothing), result = manifest.value("result", nothing);
+    for (const json& algorithm : algorithms) stored.algorithms.push_back(read_algorithm(algorithm));
+    for (const auto& [name, value] : result.items())
+      stored.result[name] = value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
+    for (const json& column : manifest.at("columns")) stored.columns.push_back(column.at("name"));
+    stored.files = manifest.value("files", std::vector<std::string>{});
+  } catch (const json::exception&) {
+    reject(path, "a member is missing or of another form than that of " + std::string(kManifestSchema));
+  }
+  return stored;
 }
 
 }  // namespace cleave

@@ -4,6 +4,9 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <vector>
+
+#include "harness/base/option_value.h"
 
 namespace cleave {
 
@@ -13,5 +16,23 @@ namespace cleave {
 // JSON, another schema, another command than `command`, an option of no such form.
 std::map<std::string, std::string> read_manifest_options(const std::filesystem::path& path,
                                                          const std::string& command);
+
+// All of it that says what the rows of steps.csv have to be.
+struct StoredManifest {
+  std::string state, command, run_id;
+  std::string steps_schema;          // empty: of a program that did not say
+  std::vector<OptionValue> options;  // name, kind and text, in their order; what is null has an empty text
+  std::vector<NamedAlgorithm> algorithms;
+  std::map<std::string, double> result;  // NaN where null
+  std::vector<std::string> columns;
+  std::vector<std::string> files;  // empty: of a program that did not say
+
+  // Empty where there is no such option.
+  std::string option(const std::string& name) const;
+};
+
+// Throws std::invalid_argument with one line naming the file and what is wrong: not there, no JSON, another schema, a
+// member that is missing or of another form.
+StoredManifest read_manifest(const std::filesystem::path& path);
 
 }  // namespace cleave

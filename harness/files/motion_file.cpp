@@ -6,6 +6,7 @@
 #include "harness/base/names.h"
 #include "harness/files/hdf5_series.h"
 #include "harness/files/problem_file_fields.h"
+#include "harness/files/whole_file.h"
 
 namespace cleave {
 namespace {
@@ -80,13 +81,22 @@ class MotionFile::Series {
 
   // `step` and measured/step say how many entries are complete, so they come last.
   void sync() {
-    Hdf5Series* const all[] = {&position_, &orientation_,    &island_,   &edge_count_,      &edge_,
-                               &part_,     &interface_,      &residual_, &largest_impulse_, &t_s_ms_,
-                               &t_pr_ms_,  &interface_rows_, &ok_,       &measured_step_,   &step_};
-    for (Hdf5Series* series : all) series->sync();
+    for (Hdf5Series* series : all()) series->sync();
+  }
+
+  void close() {
+    sync();
+    for (Hdf5Series* series : all()) series->close();
+    file_.close();
   }
 
  private:
+  std::array<Hdf5Series*, 15> all() {
+    return {&position_, &orientation_,    &island_,   &edge_count_,      &edge_,
+            &part_,     &interface_,      &residual_, &largest_impulse_, &t_s_ms_,
+            &t_pr_ms_,  &interface_rows_, &ok_,       &measured_step_,   &step_};
+  }
+
   Hdf5SeriesFile file_;
   std::size_t n_, c_, chunk_;
   Hdf5SeriesOf<float> position_{file_, "position", {n_, 3}, kSyncSteps};
@@ -107,7 +117,7 @@ class MotionFile::Series {
 };
 
 MotionFile::MotionFile(const std::filesystem::path& path, const MotionSetup& setup)
-    : series_(std::make_unique<Series>(path, setup)) {}
+    : path_(path), series_(std::make_unique<Series>(part_name_of(path), setup)) {}
 MotionFile::~MotionFile() = default;
 
 void MotionFile::add_poses(int step, std::span<const MotionPose> poses) { series_->add_poses(step, poses); }
@@ -116,10 +126,14 @@ void MotionFile::add_solution(const MotionSolution& solution) { series_->add_sol
 
 void MotionFile::end_step() {
   if (++waiting_steps_ < kSyncSteps) return;
-  sync();
+  series_->sync();
   waiting_steps_ = 0;
 }
 
-void MotionFile::sync() { series_->sync(); }
+void MotionFile::publish() {
+  series_->close();
+  series_.reset();
+  publish_part_file(path_);
+}
 
 }  // namespace cleave

@@ -56,18 +56,25 @@ struct ProblemFile {
   std::optional<ProblemShapes> shapes;
   std::map<std::string, StoredSolution> solutions;    // by label
   std::map<std::string, StoredPartition> partitions;  // by label
+  bool is_checked = false;  // read from a file whose hashes bear out all of the above
 };
 
 // Throws std::invalid_argument with one line that names the file, what is wrong in it (dataset, index, value)
 // and what is allowed: not a readable HDF5 file, wrong schema, missing parts, wrong types or shapes, values
-// that are no problem (find_problem_error). Impulses, velocities and part ids are checked for type and shape
-// only: whether they are right is for `cleave verify` to say.
+// that are no problem (find_contents_error), contents that its own hashes do not bear out. Impulses, velocities and part
+// ids are checked for type and shape only: whether they are right is for `cleave verify` to say. Damage of whatever kind
+// neither ends nor hangs the process: a child does the reading (isolated_read.h).
 ProblemFile read_problem_file(const std::filesystem::path& path);
 
-// Writes under a temporary name in the same directory (path + ".part") that is then renamed, so that whatever
-// ends the program, a file of this name is whole. Throws std::invalid_argument for a problem that
+// The same, with a line on stderr where the file carries no hashes.
+ProblemFile read_problem_file_aloud(const std::filesystem::path& path);
+
+// Whatever ends the program, a file of this name is whole (whole_file.h). Throws std::invalid_argument for a problem that
 // read_problem_file would refuse, and std::runtime_error naming the file and the reason when it cannot be
 // written.
 void write_problem_file(const std::filesystem::path& path, const ProblemFile& file);
+
+// "rock_pile_step000100.h5": what `record` calls the problem of a step.
+std::string problem_file_name(const std::string& scene, int step);
 
 }  // namespace cleave

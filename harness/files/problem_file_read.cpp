@@ -1,44 +1,28 @@
 #include <algorithm>
-#include <cmath>
+#include <cstdio>
 #include <limits>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
-#include "harness/base/names.h"
-#include "harness/base/numbers.h"
+#include "harness/base/printable_text.h"
 #include "harness/files/hdf5_reader.h"
+#include "harness/files/isolated_read.h"
 #include "harness/files/problem_file.h"
+#include "harness/files/problem_file_check.h"
 #include "harness/files/problem_file_defaults.h"
 #include "harness/files/problem_file_fields.h"
+#include "harness/files/problem_file_hashes.h"
+#include "harness/files/problem_file_pack.h"
 
 namespace cleave {
 namespace {
 
+namespace fs = std::filesystem;
+
 // Solvers index 36 numbers a body and 12 a row with int.
 constexpr std::size_t kMostBodies = std::numeric_limits<int>::max() / 36;
 constexpr std::size_t kMostRows = std::numeric_limits<int>::max() / 12;
-
-std::string text_of(int value) { return std::to_string(value); }
-std::string text_of(std::uint8_t value) { return std::to_string(value); }
-std::string text_of(double value) { return number_text(value); }
-std::string text_of(const std::string& value) { return '"' + value + '"'; }
-
-// Throws "FILE: geom_type[3] = 9, allowed: 0 to 5".
-template <class Value>
-void require(bool allowed, const Hdf5Reader& reader, const std::string& name, const Value& value,
-             const std::string& rule) {
-  if (!allowed) reader.fail(reader.full(name) + " = " + text_of(value) + ", allowed: " + rule);
-}
-
-template <class Value, class Predicate>
-void require_each(const Hdf5Reader& reader, const std::string& name, const std::vector<Value>& values,
-                  Predicate allowed, const std::string& rule) {
-  for (std::size_t i = 0; i < values.size(); ++i)
-    require(allowed(values[i]), reader, name + "[" + std::to_string(i) + "]", values[i], rule);
-}
-
-bool is_finite(double value) { return std::isfinite(value); }
-bool is_size(double value) { return std::isfinite(value) && value >= 0; }
 
 std::size_t read_length(const Hdf5Reader& reader, const char* dataset, std::size_t most) {
   const std::size_t length = reader.length(dataset);
@@ -73,14 +57,14 @@ auto present_arrays_of(const Hdf5Reader& reader) {
 void read_schema(const Hdf5Reader& reader) {
   std::string schema;
   reader.attribute("schema", schema);
-  require(schema == kProblemSchema, reader, "schema", schema, text_of(kProblemSchema));
+  if (schema != kProblemSchema)
+    reader.fail("schema = \"" + printable(schema) + "\", allowed: \"" + kProblemSchema + '"');
 }
 
-void read_experiment(const Hdf5Reader& reader, ProblemFile& file) {
-  visit_attributes(file, present_attributes_of(reader));
-  require(file.step >= 0, reader, "step", file.step, ">= 0");
-  require(is_size(file.erp), reader, "erp", file.erp, "finite and >= 0");
-  require(is_size(file.cfm), reader, "cfm", file.cfm, "finite and >= 0");
+void read_hashes(const Hdf5Reader& reader, StoredHashes& hashes) {
+  visit_hashes(hashes, [&reader](const char* name, std::string& value) {
+    if (reader.has_attribute(name)) reader.attribute(name, value);
+  });
 }
 
 // Friction is part of the problem: where there is some, nothing about it has a default.
@@ -95,40 +79,14 @@ void read_problem(const Hdf5Reader& reader, std::size_t n, std::size_t m, Proble
   visit_arrays(file, n, m, present_arrays_of(reader));
   fill_left_out(file);
   check_friction(reader, file.problem);
-  const std::string error = find_problem_error(file.problem);
-  if (!error.empty()) reader.fail(error);
-  require_each(reader, "position", file.position, is_finite, "finite numbers");
-  require_each(reader, "orientation", file.orientation, is_finite, "finite numbers");
   if (reader.has("body_group")) reader.array("body_group", {n}, file.body_group.emplace());
 }
 
-void check_convex_first(const Hdf5Reader& reader, const std::vector<int>& first, int corners) {
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const int least = i == 0 ? 0 : first[i - 1];
-    require(first[i] >= least && first[i] <= corners, reader, "convex_first[" + std::to_string(i) + "]",
-            first[i], std::to_string(least) + " to " + std::to_string(corners));
-  }
-  require(first.front() == 0, reader, "convex_first[0]", first.front(), "0");
-  require(first.back() == corners, reader, "convex_first[" + std::to_string(first.size() - 1) + "]",
-          first.back(), std::to_string(corners) + ", the number of corners");
-}
-
-ProblemShapes read_shapes(const Hdf5Reader& reader, int bodies) {
+ProblemShapes read_shapes(const Hdf5Reader& reader) {
   ProblemShapes shapes;
   const std::size_t g = read_length(reader, "geom_body", kMostRows);
   const std::size_t k = read_length(reader, "convex_points", kMostRows);
   visit_shape_arrays(shapes, g, k, arrays_of(reader));
-  const auto is_body = [bodies](int body) { return body >= -1 && body < bodies; };
-  const auto is_type = [](std::uint8_t type) { return type <= static_cast<std::uint8_t>(GeomType::plane); };
-  require_each(reader, "geom_body", shapes.geom_body, is_body,
-               "-1 (static) to " + std::to_string(bodies - 1));
-  require_each(reader, "geom_type", shapes.geom_type, is_type,
-               "0 (box), 1 (sphere), 2 (capsule), 3 (cylinder), 4 (convex), 5 (plane)");
-  require_each(reader, "geom_size", shapes.geom_size, is_size, "finite and >= 0");
-  require_each(reader, "geom_position", shapes.geom_position, is_finite, "finite numbers");
-  require_each(reader, "geom_orientation", shapes.geom_orientation, is_finite, "finite numbers");
-  require_each(reader, "convex_points", shapes.convex_points, is_finite, "finite numbers");
-  check_convex_first(reader, shapes.convex_first, static_cast<int>(k));
   return shapes;
 }
 
@@ -154,11 +112,11 @@ StoredPartition read_partition(const Hdf5Reader& reader, std::size_t n) {
 ProblemFile read_contents(const Hdf5Reader& reader) {
   ProblemFile file;
   read_schema(reader);
-  read_experiment(reader, file);
+  visit_attributes(file, present_attributes_of(reader));
   const std::size_t n = read_length(reader, "free_velocity", kMostBodies);
   const std::size_t m = read_length(reader, "rhs", kMostRows);
   read_problem(reader, n, m, file);
-  if (reader.has("shape")) file.shapes = read_shapes(reader.group("shape"), static_cast<int>(n));
+  if (reader.has("shape")) file.shapes = read_shapes(reader.group("shape"));
   if (reader.has("solution")) {
     const Hdf5Reader group = reader.group("solution");
     for (const std::string& label : group.names())
@@ -172,15 +130,55 @@ ProblemFile read_contents(const Hdf5Reader& reader) {
   return file;
 }
 
-}  // namespace
-
-ProblemFile read_problem_file(const std::filesystem::path& path) {
+// What the child does.
+std::string read_packed(const fs::path& path) {
   const Hdf5Reader reader(path);
+  forbid_opening_files();
+  PackedProblemFile packed;
   try {
-    return read_contents(reader);
+    read_hashes(reader, packed.hashes);
+    packed.file = read_contents(reader);
+    return pack(packed);
   } catch (const std::bad_alloc&) {
     reader.fail("does not fit into memory");
   }
+}
+
+// Far more than a sound file of this size takes.
+ReadLimits limits_for(const fs::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
+  constexpr std::size_t kMegabyte = 1 << 20;
+  return {256 * kMegabyte + 64 * size, static_cast<int>(60 + size / kMegabyte)};
+}
+
+// Checks what the child handed back, whatever that is.
+ProblemFile checked_file(const std::string& bytes) {
+  PackedProblemFile packed = unpack(bytes);
+  std::string error = find_contents_error(packed.file);
+  if (error.empty()) error = find_hash_error(packed.file, packed.hashes);
+  if (!error.empty()) throw std::invalid_argument(error);
+  packed.file.is_checked = !packed.hashes.problem.empty();
+  return std::move(packed.file);
+}
+
+}  // namespace
+
+ProblemFile read_problem_file(const fs::path& path) {
+  const std::string bytes =
+      read_in_child(path.string(), limits_for(path), [&path] { return read_packed(path); });
+  try {
+    return checked_file(bytes);
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(path.string() + ": " + error.what());
+  }
+}
+
+ProblemFile read_problem_file_aloud(const fs::path& path) {
+  ProblemFile file = read_problem_file(path);
+  if (!file.is_checked)
+    std::fprintf(stderr, "%s: unchecked: it carries no hashes that would tell a changed bit\n", path.c_str());
+  return file;
 }
 
 }  // namespace cleave

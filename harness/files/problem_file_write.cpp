@@ -1,9 +1,12 @@
+#include <cstdio>
 #include <stdexcept>
 
 #include "harness/base/numbers.h"
 #include "harness/files/hdf5_writer.h"
 #include "harness/files/problem_file.h"
+#include "harness/files/problem_file_check.h"
 #include "harness/files/problem_file_fields.h"
+#include "harness/files/problem_file_hashes.h"
 
 namespace cleave {
 namespace {
@@ -45,6 +48,9 @@ void write_contents(const Hdf5Writer& writer, const ProblemFile& file) {
       group.array(name, shape, values);
     };
   };
+  // First of all: an object header that is cut short still says that there were hashes.
+  const StoredHashes hashes = hashes_of(file);
+  visit_hashes(hashes, [&](const char* name, const std::string& value) { writer.attribute(name, value); });
   writer.attribute("schema", kProblemSchema);
   visit_attributes(file,
                    [&](const char* name, const auto& value, Presence) { writer.attribute(name, value); });
@@ -70,21 +76,19 @@ void write_contents(const Hdf5Writer& writer, const ProblemFile& file) {
 }  // namespace
 
 void write_problem_file(const fs::path& path, const ProblemFile& file) {
-  const std::string error = find_problem_error(file.problem);
+  const std::string error = find_contents_error(file);
   if (!error.empty()) throw std::invalid_argument(path.string() + ": not written: " + error);
   if (!file.problem.box_angle_rad.empty())
     throw std::invalid_argument(path.string() + ": not written: the format has no place for box_angle_rad");
-  const fs::path temporary = path.string() + ".part";
-  try {
-    Hdf5Writer writer(temporary);
-    write_contents(writer, file);
-    writer.close();
-    fs::rename(temporary, path);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-    throw;
-  }
+  Hdf5Writer writer(path);
+  write_contents(writer, file);
+  writer.close();
+}
+
+std::string problem_file_name(const std::string& scene, int step) {
+  char number[16];
+  std::snprintf(number, sizeof number, "%06d", step);
+  return scene + "_step" + number + ".h5";
 }
 
 }  // namespace cleave

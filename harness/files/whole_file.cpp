@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cassert>
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
@@ -33,6 +34,16 @@ class Descriptor {
     }
     return true;
   }
+  // All bytes, as far as they can be read.
+  std::string read() const {
+    std::string bytes;
+    char block[4096];
+    ssize_t count;
+    while ((count = ::read(value_, block, sizeof block)) > 0)
+      bytes.append(block, static_cast<std::size_t>(count));
+    return bytes;
+  }
+  bool seek(std::size_t place) const { return ::lseek(value_, static_cast<off_t>(place), SEEK_SET) >= 0; }
   // Pipes and some network disks cannot sync and say EINVAL; there is nothing more to ask of them.
   bool sync() const { return ::fsync(value_) == 0 || errno == EINVAL; }
 
@@ -67,6 +78,13 @@ void write_whole_file(const fs::path& path, std::string_view bytes) {
     if (!file.is_open() || !file.write(bytes)) fail(path, errno);
   }
   publish_part_file(path);
+}
+
+bool replace_in_place(const fs::path& path, std::string_view from, std::string_view to) {
+  assert(from.size() == to.size());
+  const Descriptor file(path, O_RDWR);
+  const std::size_t place = file.is_open() ? file.read().find(from) : std::string::npos;
+  return place != std::string::npos && file.seek(place) && file.write(to) && file.sync();
 }
 
 }  // namespace cleave

@@ -15,5 +15,9 @@ std::filesystem::path part_name_of(const std::filesystem::path& path);
 // For a writer that fills the file aside by itself: syncs it and gives it its name.
 void publish_part_file(const std::filesystem::path& path);
 
-// All throw std::runtime_error "PATH: cannot be written: REASON" and leave no part file behind.
+// Where the disk is full: puts `to` in the place of the first `from` of a file, of the same length, in bytes that
+// the file has already. False where it cannot.
+bool replace_in_place(const std::filesystem::path& path, std::string_view from, std::string_view to);
+
+// All others throw std::runtime_error "PATH: cannot be written: REASON" and leave no part file behind.
 }  // namespace cleave

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <string>
 
@@ -172,7 +173,9 @@ class OdeSolver : public StepSolver {
     std::string text;
     clock_.start();
     try {
-      (options_.quick ? dWorldQuickStep : dWorldStep)(feedback.world().world(), problem.h_s);
+      // Zero: it found no memory, and moved nothing.
+      if ((options_.quick ? dWorldQuickStep : dWorldStep)(feedback.world().world(), problem.h_s) == 0)
+        throw std::bad_alloc();
     } catch (const std::runtime_error& error) {
       summary.status = SolveStatus::crashed;
       text = error.what();

@@ -14,8 +14,13 @@ namespace cleave {
 class IterativeBaseline : public StepSolver {
  public:
   // name: of the registry row; must outlive the object.
-  IterativeBaseline(std::string_view name, int threads) : name_(name), clock_(threads) {}
+  IterativeBaseline(std::string_view name, const SolveOptions& options)
+      : name_(name), stop_(options.stop), clock_(options.threads) {}
   bool uses_partition() const override { return false; }
+
+ protected:
+  // For iterate() to look at, once an iteration (check_stop).
+  const std::atomic<bool>* stop() const { return stop_; }
 
  private:
   // Improves solution.impulse (m), the warm start at first, and solution.velocity = v0 + M^-1 J^T impulse. Returns the
@@ -27,6 +32,7 @@ class IterativeBaseline : public StepSolver {
                         Solution& solution) final;
 
   std::string_view name_;
+  const std::atomic<bool>* stop_;
   StageClock clock_;
   PreparedStep step_;
   std::vector<double> slack_;

@@ -10,11 +10,11 @@ namespace {
 
 class Pgs : public IterativeBaseline {
  public:
-  Pgs(int threads, int sweeps) : IterativeBaseline("pgs", threads), sweeps_(sweeps) {}
+  Pgs(const SolveOptions& options, int sweeps) : IterativeBaseline("pgs", options), sweeps_(sweeps) {}
 
  private:
   int iterate(const PreparedStep& step, Solution& solution) override {
-    gauss_seidel_sweeps(step, sweeps_, solution.impulse, solution.velocity);
+    gauss_seidel_sweeps(step, sweeps_, solution.impulse, solution.velocity, stop());
     return sweeps_;
   }
 
@@ -24,7 +24,7 @@ class Pgs : public IterativeBaseline {
 }  // namespace
 
 std::unique_ptr<StepSolver> make_pgs(const SolveOptions& options, const Settings& settings) {
-  return std::make_unique<Pgs>(options.threads, settings.integer("sweeps"));
+  return std::make_unique<Pgs>(options, settings.integer("sweeps"));
 }
 
 }  // namespace cleave

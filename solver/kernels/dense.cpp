@@ -15,6 +15,7 @@ class DenseKernel : public Kernel {
   void analyze(const PreparedStep& step, std::span<const int>, ParallelTasks& tasks) override {
     StageTimer timer(tasks.clock(), Stage::analyze);
     step_ = &step;
+    if (mass_.rows() != 6 * step.body_count() || jacobian_.rows() != step.row_count()) release();
   }
 
   bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override {
@@ -59,6 +60,14 @@ class DenseKernel : public Kernel {
   }
 
  private:
+  // A matrix of Eigen that changes its size gives its memory back first and keeps the pointer to it where
+  // there is no memory for the new size. One that has none loses nothing.
+  void release() {
+    mass_ = jacobian_ = h_ = Eigen::MatrixXd();
+    d_ = scalar_d_ = Eigen::VectorXd();
+    factor_ = Eigen::LLT<Eigen::MatrixXd>();
+  }
+
   using Basis = Eigen::Map<const Eigen::MatrixXd>;
   static Basis basis_of(const WeightBlock& block) {
     return Basis(block.basis.data(), block.row_count, block.row_count);

@@ -146,14 +146,16 @@ void DenseCholesky::list_operations() {
 bool DenseCholesky::factor_with_look_ahead(ParallelTasks& tasks) {
   list_operations();
   for (int k = 0; k < blocks_ * (blocks_ + 1) / 2; ++k) done_[k].store(0, std::memory_order_relaxed);
-  std::atomic<bool> positive = true;
+  std::atomic<bool> positive = true, stopped = false;
   tasks.run(Stage::factor_interface, static_cast<int>(operations_.size()), [&](int index) {
     const auto [step, row, column] = operations_[index];
     const bool is_update = column > step, is_diagonal = row == step;
     if (!is_diagonal) wait_until(done(is_update ? row : step, step), step + 1);
     if (is_update) wait_until(done(column, step), step + 1);
     wait_until(done(row, column), step);
-    if (positive) {
+    // A task that throws would leave others waiting for what it does.
+    if (is_stop_asked(tasks.stop())) stopped = true;
+    if (positive && !stopped) {
       if (is_update) {
         update(step, row, column);
       } else if (!is_diagonal) {
@@ -164,6 +166,7 @@ bool DenseCholesky::factor_with_look_ahead(ParallelTasks& tasks) {
     }
     raise(done(row, column));
   });
+  if (stopped) throw SolveStopped();
   return positive;
 }
 
@@ -171,6 +174,7 @@ bool DenseCholesky::factor_with_look_ahead(ParallelTasks& tasks) {
 // of.
 bool DenseCholesky::factor_in_steps(ParallelTasks& tasks) {
   for (int step = 0; step < blocks_; ++step) {
+    check_stop(tasks.stop());
     {
       StageTimer timer(tasks.clock(), Stage::factor_interface);
       if (!factor_diagonal(step)) return false;

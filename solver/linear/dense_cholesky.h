@@ -49,8 +49,9 @@ class DenseCholesky {
     }
   }
 
-  bool factor(ParallelTasks& tasks);  // false when a pivot is not positive
-  void solve(std::span<double> x);    // x (size) <- A^-1 x
+  // False when a pivot is not positive. Throws SolveStopped at the next block where the solve is to stop.
+  bool factor(ParallelTasks& tasks);
+  void solve(std::span<double> x);  // x (size) <- A^-1 x
 
   // Multiplications and additions of one factorisation, 1e6: the sum of squared column heights.
   double mflop() const { return size_ * (size_ + 1.0) * (2.0 * size_ + 1) / 6 * 1e-6; }

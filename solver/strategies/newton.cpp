@@ -30,7 +30,7 @@ class Newton : public Strategy {
     if (state.step->least_relative_compliance() < kLeastCompliance) return false;  // lambda(v) divides by it
     {
       StageTimer timer(state.tasks.clock(), Stage::predict);
-      gauss_seidel_sweeps(*state.step, kPredictorSweeps, state.impulse, state.velocity);
+      gauss_seidel_sweeps(*state.step, kPredictorSweeps, state.impulse, state.velocity, state.options.stop);
     }
     const std::size_t m = state.impulse.size();
     row_velocity_.resize(m);

@@ -60,7 +60,7 @@ class Pivot : public Strategy {
       state.impulse[r] = std::clamp(state.impulse[r], problem.lower[r], problem.upper[r]);
     }
     state.update_velocity();
-    gauss_seidel_sweeps(*state.step, sweeps, state.impulse, state.velocity);
+    gauss_seidel_sweeps(*state.step, sweeps, state.impulse, state.velocity, state.options.stop);
     state.states_from_impulses();
   }
 

@@ -10,13 +10,14 @@ namespace {
 
 class Relax : public IterativeBaseline {
  public:
-  Relax(int threads, int relaxations) : IterativeBaseline("relax", threads), relaxations_(relaxations) {}
+  Relax(const SolveOptions& options, int relaxations)
+      : IterativeBaseline("relax", options), relaxations_(relaxations) {}
 
  private:
   int iterate(const PreparedStep& step, Solution& solution) override {
     std::ranges::fill(solution.impulse, 0.0);
     step.velocity(solution.impulse, solution.velocity);
-    gauss_seidel_sweeps(step, relaxations_, solution.impulse, solution.velocity);
+    gauss_seidel_sweeps(step, relaxations_, solution.impulse, solution.velocity, stop());
     return relaxations_;
   }
 
@@ -26,7 +27,7 @@ class Relax : public IterativeBaseline {
 }  // namespace
 
 std::unique_ptr<StepSolver> make_relax(const SolveOptions& options, const Settings& settings) {
-  return std::make_unique<Relax>(options.threads, settings.integer("relaxations"));
+  return std::make_unique<Relax>(options, settings.integer("relaxations"));
 }
 
 }  // namespace cleave

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <set>
 
 #include "harness/base/names.h"
 #include "harness/experiment/options.h"
@@ -119,13 +120,11 @@ TEST_F(ManifestOfARun, DescribesTheColumnsOfStepsCsv) {
 }
 
 TEST_F(ManifestOfARun, LeavesNoTemporaryFile) {
-  int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(directory_ / "run")) {
-    ++files;
-    EXPECT_TRUE(entry.path().filename() == "steps.csv" || entry.path().filename() == "manifest.json")
-        << entry.path();
-  }
-  EXPECT_EQ(files, 2);
+  std::set<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(directory_ / "run"))
+    files.insert(entry.path().filename());
+  EXPECT_EQ(files, (std::set<std::string>{"checksums", "manifest.json", "steps.csv"}));
+  EXPECT_EQ(ask_manifest("','.join(sorted(m['files']))"), "checksums,manifest.json,steps.csv");
 }
 
 }  // namespace

@@ -298,7 +298,7 @@ int interrupted_run(const std::filesystem::path& out, int signal) {
   return finish_cleave(process);
 }
 
-TEST(Interrupt, FinishesTheStepAndSaysSo) {
+TEST(Interrupt, LeavesWholeStepsAndSaysSo) {
   for (const int signal : {SIGINT, SIGTERM}) {
     const TemporaryDirectory directory;
     EXPECT_EQ(interrupted_run(directory / "out", signal), 130);

@@ -58,8 +58,8 @@ class ExtremesTest(StandInCase):
         self.assertIn("exit code 1 on ratio_1_chain_drop", self.run_it(*self.QUICK, code=1, stand_in_code=1).stderr)
 
     def test_bad_options_are_one_line_before_anything_runs(self):
-        self.check_refused((["--cfm", "1e-4,soft"], "--cfm has 'soft'"), (["--seeds", "1,x"], "--seed is 'x'"),
-                                 (["--cfm", ""], "--cfm needs a value"), (["--fast"], "unknown option '--fast'"))
+        self.check_refused((["--cfm", "1e-4,soft"], "--cfm has 'soft'"), (["--seeds", "1,x"], "--seeds has 'x'"),
+                                 (["--cfm", ""], "--cfm has '', expected a number"), (["--fast"], "unknown option '--fast'"))
 
 
 if __name__ == "__main__":

@@ -70,8 +70,8 @@ class AblateInteriorPointTest(StandInCase):
         self.assertIn("benchmark --constant reach --constant band log_tower_cfm_0/", self.calls()[-1])
 
     def test_bad_input_and_failures_are_one_line(self):
-        self.check_refused((("--scene", "rock_pile,x"), "--scene is 'rock_pile,x', expected some of chain_drop,"),
-                           (("--cfm", "1"), "--cfm is '1', expected some of 1e-5,"))
+        self.check_refused((("--scene", "rock_pile,x"), "--scene has 'x', expected one of chain_drop,"),
+                           (("--cfm", "1"), "--cfm has '1', expected one of 1e-5,"))
         said = self.run_it("--scene", "log_tower", "--cfm", "0", code=1, stand_in_code=1).stderr.splitlines()
         self.assertIn("exit code 1: interior_point_benchmark: no", said[-1])
         self.assertFalse((self.directory / "out" / "interior_point.csv").exists())

@@ -223,6 +223,7 @@ class LadderTest(unittest.TestCase):
             self.assertIn(arguments[0], result.stderr)
         self.assertFalse(self.out.exists())
         self.assertIn("--mu: no", self.ladder("--solver", "exact", told="exact=bad", code=1).stderr)
+        self.assertFalse(self.out.exists())
 
 
 class ClosedFormTest(unittest.TestCase):

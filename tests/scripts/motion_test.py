@@ -56,6 +56,16 @@ class ReadTest(unittest.TestCase):
         numpy.testing.assert_array_equal(motion.measured.edges(4), motion_data.EDGES)
         self.assertEqual([geom.kind for geom in motion.geoms][-1], "plane")
 
+    def test_texts_of_fixed_length_are_texts(self):
+
+        def fix_lengths(file):
+            for name in ("schema", "run_id", "scene", "combinations"):
+                text = file.attrs[name].encode()
+                file.attrs.create(name, text, dtype=h5py.string_dtype("utf-8", len(text)))
+
+        motion = self.load(change=fix_lengths)
+        self.assertEqual((motion.scene, motion.attributes["run_id"]), ("rock_pile", "0123456789abcdef"))
+
     def test_geoms_come_in_the_frame_of_their_body(self):
         geoms = self.load().geoms
         for geom in geoms[:6]:

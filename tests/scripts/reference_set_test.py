@@ -44,7 +44,7 @@ class ReferenceSetTest(unittest.TestCase):
         for path in RESULTS.rglob("*"):
             name = str(path.relative_to(RESULTS))
             if path.is_file() and path.suffix != ".md" and name != "provenance.json" and path.name != "manifest.json":
-                beside = path.name == "steps.csv" and (path.parent / "manifest.json").exists()
+                beside = path.name in ("steps.csv", "checksums") and (path.parent / "manifest.json").exists()
                 self.assertTrue(beside or name in described, f"results/{name}: neither a manifest nor provenance")
         for name in described:
             self.assertTrue((RESULTS / name).exists(), f"results/provenance.json names {name}, which is not there")

@@ -96,10 +96,11 @@ class ReferenceTest(unittest.TestCase):
             "README.md", "provenance.json", "extremes.csv", "solver_benchmark.json", "partition_benchmark.json",
             "dense_benchmark.json", "busy_machine.csv",
             "two_threads.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
-            "report/verdicts.csv", "report/scaling/bodies_50/manifest.json", "report/scaling/bodies_50/steps.csv",
+            "report/verdicts.csv", *(f"report/scaling/bodies_50/{file}" for file in
+                                     ("manifest.json", "steps.csv", "checksums")),
             "figures/figure2.png", *(f"full/{scene}/{file}" for scene in
                                      ("chain_drop", "log_tower", "rock_pile", "large_rock_pile")
-                                     for file in ("manifest.json", "steps.csv"))})
+                                     for file in ("manifest.json", "steps.csv", "checksums"))})
 
     def test_paths_in_manifests_are_relative_and_files_without_one_have_provenance(self):
         self.run_it()
@@ -107,7 +108,13 @@ class ReferenceTest(unittest.TestCase):
         self.assertEqual(manifest["argv"], ["out/reference/report/rock_pile/manifest.json"])
         notes = json.loads((self.root / "results/provenance.json").read_text())["files"]
         self.assertEqual(set(notes) - {"figures"}, {name for name in self.results() if not name.endswith(
-            ("README.md", "manifest.json", "steps.csv", "provenance.json"))})
+            ("README.md", "manifest.json", "steps.csv", "checksums", "provenance.json"))})
+        summed = subprocess.run(["sha256sum", "--strict", "-c", "checksums"],
+                                cwd=self.root / "results/full/rock_pile",
+                                capture_output=True,
+                                text=True,
+                                check=True)
+        self.assertEqual(summed.stdout, "manifest.json: OK\nsteps.csv: OK\n")
         note = notes["extremes.csv"]
         self.assertEqual(note["command"], "scripts/extremes --seeds 1 --out out/reference/extremes")
         self.assertEqual(note["build"], {"git_hash": self.git("rev-parse", "HEAD"), "git_dirty": "false",

@@ -197,10 +197,10 @@ class CommandTest(Scratch):
         (self.directory / "motion.h5").write_text("x")
         self.assert_refused("not a readable HDF5 file")
         motion_data.write_motion(self.directory)
-        self.assert_refused("'figure9' is unknown; choices: figure1, figure2, film_strip", "--only",
+        self.assert_refused("--only has 'figure9', expected some of figure1,figure2,film_strip; did you mean figure", "--only",
                             "figure9")
-        self.assert_refused("--every is 0", "--every", 0)
-        self.assert_refused("--columns is 0", "--columns", 0)
+        self.assert_refused("--every is '0', expected a whole number from 1", "--every", 0)
+        self.assert_refused("--columns is '0', expected a whole number from 1 to 1000", "--columns", 0)
 
     def assert_refused(self, words, *arguments):
         result = self.render(*arguments)

@@ -327,11 +327,13 @@ class DamageTest(TreeTest):
         self.assertEqual(sorted(set(loaded.tree.experiments[0].rows["step"])), list(range(29, 90, 10)))
         self.assertIn("30 rows before --skip are left out", loaded.messages[0])
 
-    def test_without_the_solver_everything_is_a_gap(self):
-        write_run(self.directory / "rock_pile", rows_of("rock_pile"))
-        _, said = self.report("--solver", "unheard_of")
+    def test_without_the_solver_everything_is_a_gap_and_one_that_is_asked_for_has_to_be_there(self):
+        write_run(self.directory / "rock_pile", rows_of("rock_pile", solver="dense"))
+        _, said = self.report()
         self.assertIn("Figure 3: no data: no rows of the chosen solver in any scene", said)
-        self.assertIn("Table 1: no data: no rows of solver unheard_of", said)
+        self.assertIn("Table 1: no data: no rows of solver schur", said)
+        _, said = self.report("--solver", "dence", code=1)
+        self.assertEqual(said, "report: --solver has 'dence', expected some of dense; did you mean dense?\n")
 
     def test_bad_input_is_one_line(self):
         for directory, words in (("nowhere", "no such directory"), (".", "neither steps.csv nor ladder.csv")):

@@ -110,9 +110,9 @@ class ReproduceTest(StandInCase):
         self.check_refused((["--steps", "0"], "--steps is '0'"), (["--steps", "ten"], "whole number"),
                                  (["--threads", "-1"], "--threads is '-1'"), (["--seed",
                                                                                "x"], "--seed is 'x'"),
-                                 (["--scene", "rocks"], "unknown scene 'rocks'; choose from chain_drop"),
+                                 (["--scene", "rocks"], "--scene has 'rocks', expected one of chain_drop,log_tower"),
                                  (["--scene",
-                                   ""], "--scene needs a value"), (["--steps"], "--steps needs a value"),
+                                   ""], "--scene has '', expected one of"), (["--steps"], "--steps needs a value"),
                                  (["--fast"], "unknown option '--fast'"), (["rock_pile"], "'rock_pile'"))
         self.assertFalse((self.directory / "out").exists())
 

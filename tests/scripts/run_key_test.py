@@ -8,10 +8,12 @@ import unittest.mock
 
 from reproduce_test import STAND_IN
 from stand_in import StandInCase
-from synthetic import ROOT, run_script
+from synthetic import ROOT
 
+from cleave_scripts.measurements import runs
 from cleave_scripts.results import run_key
 from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.kept import RunDirectories
 
 KEY = {"run_id": "1", "threads": 2, "git_hash": "a" * 40, "git_dirty": "false", "flags": "-O3", "build_type": "Release",
        "cpu_model": "C", "cores": 2}
@@ -75,15 +77,23 @@ class KeepTest(StandInCase):
                 self.reproduce()
 
     def test_another_command_is_refused_on_the_same_build_and_machine_alone(self):
-        """Exit code of is_complete for other arguments than those that the results were made by."""
         self.reproduce()
-        for change, code, words in (({}, 3, "holds the results of: run --scene rock_pile"),
-                                    ({"git_hash": "f" * 40}, 1, "this is ffffffffff"),
-                                    ({"flags": "-O0"}, 1, "flags"), ({"cores": 8}, 1, "another machine")):
+        with self.assertRaisesRegex(ResultError, "holds the results of: run --scene rock_pile"):
+            self.find("--steps", "7")
+        for change, words in (({"git_hash": "f" * 40}, "this is ffffffffff"), ({"flags": "-O0"}, "flags"),
+                              ({"cores": 8}, "another machine")):
             with unittest.mock.patch.dict(os.environ, STAND_IN_KEY=json.dumps(change)):
-                done = run_script("is_complete", self.program, self.directory / "out" / "rock_pile", "run", "--steps", 7)
-            self.assertEqual(done.returncode, code, done.stdout)
-            self.assertIn(words, done.stdout)
+                result, said = self.find("--steps", "7")
+            self.assertIsNone(result)
+            self.assertIn(words, said)
+
+    def find(self, *options):
+        """What is kept of a run of reproduce by the arguments of another."""
+        settings = runs.Settings(steps=20, measure_every=2, repeats=3, threads=2, seed=1)
+        run = runs.Run(self.directory / "out" / "rock_pile", "label", "what", ("--scene", "rock_pile", *options), settings)
+        store = RunDirectories()
+        store.open(self.program, [run], force=True)
+        return store.find(run)
 
     def test_results_of_a_dirty_build_are_never_kept(self):
         for _ in range(2):
@@ -94,8 +104,7 @@ class KeepTest(StandInCase):
 
     def test_motion_that_is_asked_for_has_to_be_there(self):
         self.reproduce()
-        done = run_script("is_complete", self.program, self.directory / "out" / "rock_pile", "run", "--record-motion")
-        self.assertEqual(done.returncode, 1, done.stdout)
+        self.assertEqual(self.find("--record-motion"), (None, ""))
 
 
 class VersionTest(unittest.TestCase):

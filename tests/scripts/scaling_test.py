@@ -67,10 +67,10 @@ class ScalingTest(StandInCase):
             self.assertEqual(len(self.calls()), calls)
 
     def test_bad_options_are_one_line_before_anything_runs(self):
-        self.check_refused((["--sizes", "50,many"], "--sizes is 'many'"),
+        self.check_refused((["--sizes", "50,many"], "--sizes has 'many'"),
                                  (["--sizes",
-                                   ""], "--sizes needs a value"), (["--steps", "5", "--measure-every",
-                                                                    "6"], "--measure-every is 6"),
+                                   ""], "--sizes has '', expected a whole number"), (["--steps", "5", "--measure-every",
+                                                                    "6"], "--measure-every is '6', expected at most --steps, 5"),
                                  (["--seed", "x"], "--seed is 'x'"), (["--fast"], "unknown option '--fast'"))
 
 

@@ -6,6 +6,7 @@ import pathlib
 
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.manifest import load_manifest
+from cleave_scripts.results.programs import load_benchmark
 from cleave_scripts.results.steps import load_runs
 
 
@@ -47,7 +48,7 @@ class Stored:
 
     @functools.cache
     def benchmark(self, name, made_by):
-        return json.loads(self.path(name, made_by).read_text(encoding="utf-8"))["benchmarks"]
+        return load_benchmark(self.path(name, made_by))
 
     @functools.cache
     def provenance(self):

@@ -23,7 +23,6 @@ RENDERED = ((
 def build(data, directory):
     """(sections, gaps): files go to directory/figures; gaps are (anchor, heading, reason)."""
     files = directory / "figures"
-    files.mkdir(exist_ok=True)
     gaps = []
     tables, faults = scene_tables(data)
     verdicts = judge_all(data, load_paper_table1())

@@ -12,6 +12,7 @@ import matplotlib.pyplot as pyplot
 
 from cleave_scripts.figures import looks
 from cleave_scripts.results.names import NO_PARTITIONER
+from cleave_scripts.results.whole_file import written_aside
 
 WIDTH_IN = 7.4
 PNG_DPI = 200
@@ -122,9 +123,11 @@ def panels(count, columns=2, height_in=2.5, **options):
 
 def save(figure, directory, name):
     """directory/name.pdf and .png; returns both paths. Equal input gives equal bytes."""
-    directory.mkdir(parents=True, exist_ok=True)
-    paths = [directory / f"{name}.{ending}" for ending in ("pdf", "png")]
-    figure.savefig(paths[0], metadata={"CreationDate": None})
-    figure.savefig(paths[1], dpi=PNG_DPI, metadata={"Software": None})
+    paths = []
+    for ending, options in (("pdf", {"metadata": {"CreationDate": None}}),
+                            ("png", {"metadata": {"Software": None}, "dpi": PNG_DPI})):
+        paths.append(directory / f"{name}.{ending}")
+        with written_aside(paths[-1]) as part:
+            figure.savefig(part, format=ending, **options)
     pyplot.close(figure)
     return paths

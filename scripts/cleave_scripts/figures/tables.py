@@ -10,6 +10,7 @@ from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.manifest import machine
 from cleave_scripts.results.paper import load_paper_table1
+from cleave_scripts.results.whole_file import write_text
 from cleave_scripts.table.formats import FORMATS
 from cleave_scripts.table.timing_table import build_tables
 
@@ -57,7 +58,7 @@ def table1_body(data, tables, faults, directory):
     links = []
     for kind, (label, name, media_type) in FILES.items():
         text = FORMATS[kind](tables, [f"Ours: {name}." for name in machines])
-        (directory / name).write_text(text, encoding="utf-8")
+        write_text(directory / name, text)
         links.append(page.download(label, directory / name, media_type))
     gaps = "".join(map(page.gap, faults))
     return f'{table1(tables)}{gaps}<p class="caption links">{" · ".join(links)}</p>'
@@ -65,7 +66,7 @@ def table1_body(data, tables, faults, directory):
 
 def verdicts_body(verdicts, directory):
     path = directory / "verdicts.csv"
-    as_frame(verdicts).to_csv(path, index=False)
+    write_text(path, as_frame(verdicts).to_csv(index=False))
     link = page.download("CSV", path, "text/csv")
     return f'{verdict_table(verdicts)}<p class="caption links">{link}</p>'
 

@@ -1,22 +1,24 @@
 """One cell of the ladder: a rung's value and a solver, run in a process of its own and judged."""
 import dataclasses
 import hashlib
-import json
 import math
 import pathlib
 import statistics
 import subprocess
 import tempfile
+import threading
 
 from cleave_scripts.ladder import rungs
 from cleave_scripts.ladder.climbers import solver_options
 from cleave_scripts.ladder.rungs import ENERGY_LIMIT, HEIGHT_LIMIT_M, NAN, OVERSHOOT, PENETRATION_LIMIT_M
-from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.errors import Interrupted, ResultError
+from cleave_scripts.results.kept import Journal
 from cleave_scripts.results.manifest import load_manifest
 from cleave_scripts.results.paper import PLAIN
-from cleave_scripts.results.run_key import build_key, difference
+from cleave_scripts.results.run_key import build_key
 from cleave_scripts.results.steps import load_steps
 
+TIMED_OUT = "timed out"
 # A cell has the status of its worst step; rows after a world has stopped say nothing new.
 WORST_FIRST = ("crashed", "timeout", "out_of_memory", "diverged", "refused", "not_converged", "skipped", "ok")
 MEASURED = ("residual_m_per_s", "iterations", "joint_drift_m", "max_penetration_m", "energy_excess_j",
@@ -33,6 +35,10 @@ class Cell:
     steps: int
 
     @property
+    def label(self):
+        return f"{self.rung.name} {self.value} {self.solver}"
+
+    @property
     def arguments(self):
         """What cleave is given, less where it writes. Every solver advances a world of its own."""
         options = [
@@ -42,15 +48,13 @@ class Cell:
                 "--partitioner", PLAIN[0], "--refiner", PLAIN[1], *solver_options(self.solver))
 
 
-class Interrupted(Exception):
-    """The program was stopped from outside."""
-
-
 _running = set()
+_stopped = threading.Event()
 
 
 def stop_running():
-    """Ends the programs that still run; their cells are Interrupted."""
+    """Ends the programs that still run; their cells are Interrupted, and so are those that have not begun."""
+    _stopped.set()
     for process in list(_running):
         process.terminate()
 
@@ -59,26 +63,36 @@ def run_cell(program, cell, timeout_s):
     """The columns of a cell that depend on its own run alone."""
     with tempfile.TemporaryDirectory(prefix="cleave_ladder_") as scratch:
         out = pathlib.Path(scratch) / "out"
-        process = subprocess.Popen(
-            [program, *cell.arguments, "--out", str(out)],
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True)
-        _running.add(process)
-        try:
-            _, said = process.communicate(timeout=timeout_s)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.communicate()
+        code, last_words = _run_program([program, *cell.arguments, "--out", str(out)], timeout_s)
+        if code == TIMED_OUT:
             return failed("timeout", f"stopped after {timeout_s:g} s")
-        finally:
-            _running.discard(process)
-        return read_cell(cell, out, process.returncode, (said.strip().splitlines() or ["nothing"])[-1])
+        return read_cell(cell, out, code, last_words)
+
+
+def _run_program(command, timeout_s):
+    """(exit code, the last line that was said)"""
+    if _stopped.is_set():
+        raise Interrupted
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
+    _running.add(process)
+    if _stopped.is_set():
+        process.terminate()
+    try:
+        _, said = process.communicate(timeout=timeout_s)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.communicate()
+        return TIMED_OUT, ""
+    finally:
+        _running.discard(process)
+    if process.returncode == 130:
+        _stopped.set()
+    if _stopped.is_set():
+        raise Interrupted
+    return process.returncode, (said.strip().splitlines() or ["nothing"])[-1]
 
 
 def read_cell(cell, out, code, last_words):
-    if code == 130:
-        raise Interrupted
     if code < 0:
         return failed("crashed", f"ended by signal {-code}")
     if code not in (0, 2):
@@ -150,37 +164,15 @@ def physics(cell, rows):
     return "+".join(name for name, is_broken in broken.items() if is_broken) or "ok"
 
 
-class Journal:
-    """Finished cells, a line each, so that a ladder can be interrupted and given again."""
+class LadderJournal(Journal):
+    """Finished cells, so that a ladder can be interrupted and given again. Other judges run everything again, and a longer time
+    limit what had no time."""
 
-    def __init__(self, path, program):
-        self.path = path
-        # Another build or machine, or other judges, run everything again.
-        self.key = build_key(program)
-        self.judges = hashlib.sha256(b"".join(
-            pathlib.Path(file).read_bytes() for file in (__file__, rungs.__file__))).hexdigest()
-        self.finished = {}
-        for line in path.read_text().splitlines() if path.exists() else ():
-            try:
-                entry = json.loads(line)
-            except ValueError:
-                continue  # the line that was being written when the ladder was stopped
-            if entry.get("judges") == self.judges and difference(entry["key"], self.key) is None:
-                self.finished[entry["arguments"]] = entry
+    def __init__(self, path, program, timeout_s):
+        judges = b"".join(pathlib.Path(file).read_bytes() for file in (__file__, rungs.__file__))
+        self.timeout_s = timeout_s
+        super().__init__(path, build_key(program), {"judges": hashlib.sha256(judges).hexdigest(), "timeout_s": timeout_s})
 
-    def find(self, cell, timeout_s):
-        entry = self.finished.get(" ".join(cell.arguments))
-        if entry is None or (entry["result"]["status"] == "timeout" and entry["timeout_s"] < timeout_s):
-            return None
-        return entry["result"]
-
-    def add(self, cell, timeout_s, result):
-        entry = {
-            "key": self.key,
-            "judges": self.judges,
-            "arguments": " ".join(cell.arguments),
-            "timeout_s": timeout_s,
-            "result": result
-        }
-        with self.path.open("a") as file:
-            file.write(json.dumps(entry) + "\n")
+    def is_valid(self, entry):
+        is_final = entry["result"]["status"] != "timeout" or entry["timeout_s"] >= self.timeout_s
+        return is_final and super().is_valid(entry | {"timeout_s": self.timeout_s})

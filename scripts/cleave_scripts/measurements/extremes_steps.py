@@ -1,11 +1,12 @@
 """What scripts/extremes measured, a row a step, and the table of it."""
-import csv
 import re
 
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.steps import find_steps_files, load_steps
+from cleave_scripts.results.whole_file import write_rows
 
-NAME = re.compile(r"ratio_(?P<mass_ratio>[^_]+)_(?P<scene>.+)_cfm_(?P<cfm>[^_]+)_seed_(?P<seed>\d+)")
+NUMBER = r"[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?"
+NAME = re.compile(rf"ratio_(?P<mass_ratio>{NUMBER})_(?P<scene>.+)_cfm_(?P<cfm>{NUMBER})_seed_(?P<seed>[0-9]+)")
 COLUMNS = ("status", "factorizations")
 WRITTEN = ("mass_ratio", "scene", "cfm", "seed", *COLUMNS)
 
@@ -17,15 +18,13 @@ def read(paths):
         match = NAME.fullmatch(path.parent.name)
         if match is None:
             raise ResultError(f"{path}: not a run of scripts/extremes")
-        steps += [match.groupdict() | {name: row[name] for name in COLUMNS} for row in load_steps(path, COLUMNS)[0]]
+        steps += [match.groupdict() | _measured(row) for row in load_steps(path, COLUMNS)[0]]
     return steps
 
 
-def write(path, steps):
-    with open(path, "w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, WRITTEN, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(steps)
+def _measured(row):
+    row.integer("factorizations")  # has to be one
+    return {name: row[name] for name in COLUMNS}
 
 
 def cells(steps):
@@ -63,3 +62,16 @@ def markdown(table):
         texts = [_describe(found[cfm]) if cfm in found else "-" for cfm in cfms]
         lines.append(f"| {ratio} | {scene} | {sum(map(len, found.values()))} | " + " | ".join(texts) + " |")
     return "\n".join(lines)
+
+
+def judge(paths, csv_file=None):
+    """Prints the table, writes the steps where a file is named, and returns the exit code of a command."""
+    steps = read(paths)
+    if not steps:
+        raise ResultError("no rows of a run of scripts/extremes")
+    if csv_file:
+        write_rows(csv_file, WRITTEN, steps)
+    print(markdown(cells(steps)))
+    good = all(map(holds, steps))
+    print("every step solved within the number of factorisations" if good else "not every step holds")
+    return 0 if good else 3

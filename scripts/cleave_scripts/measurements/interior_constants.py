@@ -2,6 +2,9 @@
 import csv
 import dataclasses
 import io
+import re
+
+from cleave_scripts.results.programs import ROOT
 
 NOTHING = 0.01  # a constant that changes the factorisations by less than this share, and loses no problem, buys nothing
 
@@ -33,6 +36,12 @@ class Total:
 
     def is_worse(self, default):
         return self.above_limit > default.above_limit or self.ratio(default) >= 1 + NOTHING
+
+
+def names():
+    """Of the constants, as the solver has them."""
+    header = ROOT / "solver" / "strategies" / "interior_constants.h"
+    return re.findall(r"^  (?:double|int) (\w+) = ", header.read_text(encoding="utf-8"), re.M)
 
 
 def totals(text):

@@ -1,9 +1,10 @@
 """Moves what the stages of scripts/reference made into results/, with a note of what made each file."""
+import hashlib
 import json
-import shutil
 
 from cleave_scripts.measurements.reference_stages import RUN_FILES, STAGES
 from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.whole_file import write_bytes, write_text
 
 
 def _sources(stage, directory):
@@ -18,11 +19,18 @@ def _sources(stage, directory):
 
 def _copy(source, target, root):
     """Paths in JSON are written relative to the checkout."""
-    target.parent.mkdir(parents=True, exist_ok=True)
     if source.suffix == ".json":
-        target.write_text(source.read_text(encoding="utf-8").replace(f"{root}/", ""), encoding="utf-8")
+        write_text(target, source.read_text(encoding="utf-8").replace(f"{root}/", ""))
     else:
-        shutil.copyfile(source, target)
+        write_bytes(target, source.read_bytes())
+
+
+def _write_checksums(results):
+    """Of every stored run anew, for `cleave verify`: the paths in its manifest are others now."""
+    for manifest in sorted(results.rglob("manifest.json")):
+        files = [path for path in (manifest.parent / name for name in RUN_FILES) if path.is_file()]
+        lines = [f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n" for path in files]
+        write_text(manifest.parent / "checksums", "".join(lines))
 
 
 def publish(root, records):
@@ -46,5 +54,6 @@ def publish(root, records):
         for _, target in stage.files:
             if target.endswith("/"):
                 notes[target.rstrip("/")] = records[stage.name]
-    (results / "provenance.json").write_text(
-        json.dumps({"schema": "cleave-provenance-1", "files": notes}, indent=2) + "\n", encoding="utf-8")
+    _write_checksums(results)
+    text = json.dumps({"schema": "cleave-provenance-1", "files": notes}, indent=2)
+    write_text(results / "provenance.json", text + "\n")

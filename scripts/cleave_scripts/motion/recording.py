@@ -99,7 +99,7 @@ def load_motions(directory):
 
 
 def _read(path, file):
-    schema = file.attrs.get("schema", "none")
+    schema = _text(file.attrs.get("schema", "none"))
     if schema != SCHEMA:
         raise ResultError(f"{path}: schema = {schema}, expected {SCHEMA}")
     names = ("run_id", "scene", "seed", "h_s", "steps", "measure_every", "combinations")
@@ -120,7 +120,12 @@ def _read(path, file):
 def _attribute(path, file, name):
     if name not in file.attrs:
         raise ResultError(f"{path}: attribute {name} is missing")
-    return file.attrs[name]
+    return _text(file.attrs[name])
+
+
+def _text(value):
+    """h5py gives texts of fixed length as bytes."""
+    return value.decode() if isinstance(value, bytes) else value
 
 
 def _array(path, file, name, count=None, entry=None):

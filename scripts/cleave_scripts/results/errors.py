@@ -2,4 +2,12 @@
 
 
 class ResultError(Exception):
-    """Results that cannot be read; the text is for the user."""
+    """Bad input, or results that cannot be read; the text is for the user."""
+
+
+class AlreadyTold(Exception):
+    """A program has failed and has said itself why."""
+
+
+class Interrupted(Exception):
+    """Stopped by the user or from outside; the text says how to go on, if there is more to say than that."""

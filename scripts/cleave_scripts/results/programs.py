@@ -1,24 +1,45 @@
 """The programs that scripts run: CLEAVE_PROGRAM, or what is built now."""
+import json
 import os
 import pathlib
+import signal
 import subprocess
 
-from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.command import say
+from cleave_scripts.results.errors import AlreadyTold, ResultError
 from cleave_scripts.results.steps import load_steps
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 
 
-def find_program(*targets):
-    """Path of cleave, built with the targets named; with CLEAVE_PROGRAM nothing is built."""
+def find_program(*targets, about, check=lambda program: None):
+    """Path of cleave, built with the targets named; with CLEAVE_PROGRAM nothing is built.
+
+    about: what is said of the work before it begins, such as how long it takes. check(program) refuses options that only the
+    program can judge, before anything else is said where that is possible.
+    """
+    program = _given_program()
+    if program:
+        check(program)
+        say(about)
+        return program
+    say(about)
+    program = _build(("cleave", *targets))
+    check(program)
+    return program
+
+
+def _given_program():
     given = os.environ.get("CLEAVE_PROGRAM")
-    if given:
-        if not os.access(given, os.X_OK):
-            raise ResultError(f"CLEAVE_PROGRAM is '{given}', which cannot be run")
-        return pathlib.Path(given).resolve()
-    chosen = [word for target in ("cleave", *targets) for word in ("--target", target)]
+    if given and not (os.path.isfile(given) and os.access(given, os.X_OK)):
+        raise ResultError(f"CLEAVE_PROGRAM is '{given}', which cannot be run")
+    return pathlib.Path(given).resolve() if given else None
+
+
+def _build(targets):
+    chosen = [word for target in targets for word in ("--target", target)]
     if subprocess.run([ROOT / "scripts" / "setup", "--preset", "release", *chosen], check=False).returncode != 0:
-        raise ResultError("set-up failed")
+        raise AlreadyTold
     return ROOT / "build" / "release" / "cleave"
 
 
@@ -41,12 +62,27 @@ def run(command, allowed=(0,), **options):
     """Runs to the end; an exit code that is not allowed is a ResultError with its last line."""
     words = list(map(str, command))
     try:
-        done = subprocess.run(words, stderr=subprocess.PIPE, text=True, check=False, **options)
+        done = subprocess.run(words, stderr=subprocess.PIPE, text=True, errors="replace", check=False, **options)
     except FileNotFoundError:
         raise ResultError(f"{words[0]} is not built; run scripts/setup first") from None
+    except OSError as error:
+        raise ResultError(f"{words[0]} cannot be run: {error.strerror}") from None
     if done.returncode not in allowed:
         last = (done.stderr.strip().splitlines() or ["no message"])[-1]
         raise ResultError(f"{' '.join(words[:2])} stopped with exit code {done.returncode}: {last}")
+
+
+def run_and_watch(command, **options):
+    """The exit code, as a shell tells it, of a program that says itself what it does. When it is to be interrupted it is told
+    once, and has the time that it needs to end well."""
+    with subprocess.Popen(list(map(str, command)), process_group=0, **options) as process:
+        try:
+            code = process.wait()
+        except KeyboardInterrupt:
+            process.send_signal(signal.SIGINT)
+            process.wait()
+            raise
+    return code if code >= 0 else 128 - code
 
 
 def record(program, directory, scene, at, *options):
@@ -65,3 +101,11 @@ def replay(program, directory, files, *options, all_ok=False):
         raise ResultError(f"{len(failed)} of {len(rows)} replayed cells are not ok, first: step {first['step']}, "
                           f"{first['partitioner']} {first['refiner']}: status {first['status']}")
     return rows
+
+
+def load_benchmark(path):
+    """The rows that Google Benchmark has written."""
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))["benchmarks"]
+    except (ValueError, KeyError, TypeError):
+        raise ResultError(f"{path}: not written by a benchmark program") from None

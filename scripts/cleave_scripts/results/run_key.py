@@ -14,14 +14,18 @@ MACHINE = ("cpu_model", "cores")
 
 
 def program_key(program, arguments):
-    """arguments: run ..., as the program would get them."""
+    """arguments: run ..., as the program would get them; what it does not take is refused in its own words."""
     command = [str(program), *map(str, arguments), "--print-key"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", check=False)
+        key = json.loads(done.stdout) if done.returncode == 0 else {}
+    except (OSError, ValueError) as error:
+        raise ResultError(f"{program} --print-key does not work: {error}") from None
     if done.returncode != 0:
         words = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        raise ResultError(f"{program} --print-key stopped with exit code {done.returncode}: {words}")
-    key = json.loads(done.stdout)
-    missing = [name for name in (*RUN, *BUILD, *MACHINE) if name not in key]
+        own = words.partition("cleave run: ")[2]
+        raise ResultError(own or f"{program} --print-key stopped with exit code {done.returncode}: {words}")
+    missing = [name for name in (*RUN, *BUILD, *MACHINE) if not isinstance(key, dict) or name not in key]
     if missing:
         raise ResultError(f"{program} --print-key does not say {', '.join(missing)}; build it anew")
     return key

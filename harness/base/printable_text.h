@@ -1,0 +1,15 @@
+// Texts that come from files: whether they may stand in a line of output, and how to show those that may not.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace cleave {
+
+// Well-formed UTF-8 without control characters and line ends of any kind.
+bool is_printable_utf8(std::string_view text);
+
+// The text with every byte outside ASCII's printable ones as \x0a, where it is not printable; else the text itself.
+std::string printable(std::string_view text);
+
+}  // namespace cleave

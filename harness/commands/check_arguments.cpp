@@ -1,0 +1,76 @@
+#include "harness/commands/check_arguments.h"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+#include <vector>
+
+#include "harness/base/names.h"
+
+namespace cleave {
+namespace {
+
+[[noreturn]] void reject(const std::string& text) { throw std::invalid_argument(text); }
+
+bool is_flag(const CLI::Option& option) { return option.get_items_expected_min() == 0; }
+
+std::vector<std::string> long_options(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// --name=value, or --name with its value or nothing behind it. Returns whether the next argument is the value.
+bool check_option(const CLI::Option& option, const std::string& argument, const std::string* next) {
+  const std::size_t equals = argument.find('=');
+  const std::string name = argument.substr(0, equals);
+  if (is_flag(option)) {
+    if (equals != std::string::npos)
+      reject(name + ": takes no value, not '" + argument.substr(equals + 1) + "'");
+    return false;
+  }
+  if (equals != std::string::npos) {
+    if (equals + 1 == argument.size()) reject(name + ": needs a value after the =");
+    return false;
+  }
+  if (next == nullptr) reject(name + ": needs a value");
+  if (next->starts_with("--"))
+    reject(name + ": needs a value; '" + *next + "' is taken for one only when written " + name + "=" +
+           *next);
+  return true;
+}
+
+}  // namespace
+
+void check_arguments(const CLI::App& command, std::span<const std::string> arguments) {
+  std::set<std::string> given;
+  bool options_over = false;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const std::string& argument = arguments[i];
+    // The parser would end the command at ++.
+    if (argument.empty() || argument == "++") reject("unexpected argument '" + argument + "'");
+    if (argument == "--") options_over = true;
+    if (options_over || !argument.starts_with("--")) continue;
+    const std::string name = argument.substr(0, argument.find('='));
+    const CLI::Option* option = command.get_option_no_throw(name);
+    if (option == nullptr) continue;
+    if (!given.insert(name).second) reject(name + ": is given twice");
+    const std::string* next = i + 1 < arguments.size() ? &arguments[i + 1] : nullptr;
+    if (check_option(*option, argument, next)) ++i;
+  }
+}
+
+void reject_extras(const CLI::App& app) {
+  std::vector<std::string> extras = app.remaining();
+  // Before file names.
+  if (const auto mark = std::ranges::find(extras, "--"); mark != extras.end()) extras.erase(mark);
+  if (extras.empty()) return;
+  if (!extras.front().starts_with("-")) reject("unexpected argument '" + extras.front() + "'");
+  const std::string name = extras.front().substr(0, extras.front().find('='));
+  const std::string nearest = nearest_name(name, long_options(app));
+  const std::string question = nearest.empty() ? "" : " (did you mean " + nearest + "?)";
+  reject(name + ": no such option" + question + "; see " + app.get_name() + " --help");
+}
+
+}  // namespace cleave

@@ -1,0 +1,18 @@
+// What the parser would take without a word, refused.
+#pragma once
+
+#include <CLI/App.hpp>
+#include <span>
+#include <string>
+
+namespace cleave {
+
+// arguments: those after the command's name. Throws std::invalid_argument with one line for an option that is
+// given twice, a flag with a value (--cold=2), an option without one (--mu=, or --out before another option)
+// and an empty argument where no option takes it. What the command does not know is left to the parser.
+void check_arguments(const CLI::App& command, std::span<const std::string> arguments);
+
+// After parsing: throws for what `app` could not place, naming the nearest option.
+void reject_extras(const CLI::App& app);
+
+}  // namespace cleave

@@ -1,0 +1,168 @@
+#include "harness/commands/verify_row_sums.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <type_traits>
+
+#include "harness/base/numbers.h"
+#include "harness/experiment/step_record.h"
+#include "solver/step_problem.h"
+
+namespace cleave {
+namespace {
+
+template <class Number>
+bool reads_as(const std::string& cell) {
+  Number value{};
+  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  return error == std::errc{} && end == cell.data() + cell.size();
+}
+
+// By column: whether a cell reads as what the column holds.
+std::map<std::string, bool (*)(const std::string&)> readers() {
+  std::map<std::string, bool (*)(const std::string&)> readers;
+  visit_fields(StepRecord{},
+               [&]<class Value>(std::string_view name, const Value&, const char*, ColumnOf, About) {
+                 if constexpr (std::is_arithmetic_v<Value>) readers.emplace(name, reads_as<Value>);
+               });
+  return readers;
+}
+
+// Measured only where a solve returned something; `-` or nan elsewhere.
+constexpr const char* kOfResult[] = {"t_s_ms",           "t_s_min_ms",       "t_s_max_ms",
+                                     "t_s_other_ms",     "residual_m_per_s", "largest_free_velocity_m_per_s",
+                                     "kinetic_energy_j", "solution_hash"};
+constexpr const char* kNanWhenDiverged[] = {"residual_m_per_s", "kinetic_energy_j"};
+
+// One row; what is wrong goes to the findings with its line.
+class RowAlone {
+ public:
+  RowAlone(const StepsTable& table, std::size_t row, Findings& findings)
+      : table_(table), row_(row), findings_(findings) {}
+
+  void check() {
+    check_status();
+    check_sizes();
+    check_partition();
+    if (!has_result(text("status"))) return;
+    check_times();
+    check_residuals();
+  }
+
+ private:
+  const std::string& text(const std::string& column) const { return table_.cell(row_, column); }
+  double number(const std::string& column) const { return table_.number(row_, column); }
+
+  void require(bool holds, const std::string& column, const std::string& wanted) {
+    if (!holds)
+      findings_.add(StepsTable::line_of(row_) + ": " + column + " = " + text(column) +
+                    ", allowed: " + wanted);
+  }
+
+  // A cell that must be another number of the row, NaN among them.
+  void require_equal(const std::string& column, double wanted) {
+    const double stored = number(column);
+    require(stored == wanted || (std::isnan(stored) && std::isnan(wanted)), column, number_text(wanted));
+  }
+
+  void check_status() {
+    const std::string& status = text("status");
+    const bool result = has_result(status);
+    static const std::set<std::string> known = [] {
+      std::set<std::string> names;
+      for (int i = 0; i <= static_cast<int>(SolveStatus::skipped); ++i)
+        names.insert(to_string(static_cast<SolveStatus>(i)));
+      return names;
+    }();
+    require(known.contains(status), "status", "a status that there is");
+    for (const char* column : kOfResult) {
+      if (status == "diverged" && std::ranges::count(kNanWhenDiverged, std::string(column)) > 0) continue;
+      require((text(column) != "nan" && text(column) != "-") == result, column,
+              std::string(result ? "measured" : "unmeasured") + " where status is " + status);
+    }
+    if (status == "ok") require(text("status_reason") == "-", "status_reason", "- where status is ok");
+    if (!result || status == "ok" || text("status_reason") != "-") return;
+    const double limit_m_per_s = kExactLimit * std::max(1.0, number("largest_free_velocity_m_per_s"));
+    require(!(number("residual_m_per_s") <= limit_m_per_s), "status",
+            "ok, as the residual is within the limit and no reason is given");
+  }
+
+  void check_sizes() {
+    if (text("status") == "skipped") return require_equal("rows", -1);
+    require_equal("rows", number("rows_bilateral") + number("rows_normal") + number("rows_friction"));
+    require_equal("contacts", number("rows_normal"));
+  }
+
+  void check_partition() {
+    static const std::vector<std::string> both = {"parts",          "max_part_bodies",  "cut_pairs",
+                                                  "interface_rows", "interface_bodies", "contiguous"};
+    if (text("partitioner") == "-") {
+      for (const std::string& column : both)
+        for (const std::string& counted : {column, column + "_before"}) require_equal(counted, -1);
+      require_equal("interface_cover_bodies", -1);
+      for (const char* column :
+           {"part_mass_ratio_max", "t_graph_ms", "t_partition_ms", "t_refine_ms", "t_pr_ms"})
+        require_equal(column, kUnmeasured);
+    }
+    if (number("parts") <= 0) return;
+    if (text("refiner") == "none")
+      for (const std::string& column : both) require_equal(column + "_before", number(column));
+    if (text("kernel") == "schur-rows") require_equal("interface_unknowns", number("interface_rows"));
+    if (text("kernel") == "schur-bodies")
+      require_equal("interface_unknowns", 6 * number("interface_cover_bodies"));
+  }
+
+  void check_times() {
+    double other_ms = number("t_s_ms");
+    for (const std::string_view stage : kStageNames) other_ms -= number("t_s_" + std::string(stage) + "_ms");
+    require_equal("t_s_other_ms", other_ms);
+    require(number("t_s_min_ms") <= number("t_s_ms"), "t_s_min_ms", "at most t_s_ms");
+    require(number("t_s_max_ms") >= number("t_s_ms"), "t_s_max_ms", "at least t_s_ms");
+    const double repeats = number("repeat_count");
+    // The median of two is the lower one.
+    if (repeats <= 2) require_equal("t_s_min_ms", number("t_s_ms"));
+    if (repeats != 1) return;
+    require_equal("t_s_max_ms", number("t_s_ms"));
+    require_equal("t_pr_ms", number("t_partition_ms") + number("t_refine_ms"));
+  }
+
+  void check_residuals() {
+    if (std::isnan(number("residual_m_per_s"))) return;
+    require_equal("residual_m_per_s",
+                  std::max({number("residual_bilateral_m_per_s"), number("residual_normal_m_per_s"),
+                            number("residual_friction_m_per_s")}));
+  }
+
+  const StepsTable& table_;
+  std::size_t row_;
+  Findings& findings_;
+};
+
+}  // namespace
+
+bool has_result(const std::string& status) {
+  return status == "ok" || status == "not_converged" || status == "timeout" || status == "diverged";
+}
+
+bool check_cells(const StepsTable& table, const std::string& subject, CheckList& list) {
+  Findings findings;
+  for (const auto& [column, reads] : readers())
+    for (std::size_t row = 0; row < table.row_count(); ++row)
+      if (!reads(table.cell(row, column)))
+        findings.add(StepsTable::line_of(row) + ": " + column + " = '" + table.cell(row, column) +
+                     "', allowed: a number");
+  list.add(findings.none(), subject, "every cell reads as what its column holds" + findings.text());
+  return findings.none();
+}
+
+void check_rows_alone(const StepsTable& table, const std::string& subject, CheckList& list) {
+  Findings findings;
+  for (std::size_t row = 0; row < table.row_count(); ++row) RowAlone(table, row, findings).check();
+  list.add(findings.none(), subject, "sums, orders and statuses within each row" + findings.text());
+}
+
+}  // namespace cleave

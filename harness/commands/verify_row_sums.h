@@ -1,0 +1,20 @@
+// What the cells of one row of steps.csv say of each other: needs no other file.
+#pragma once
+
+#include <string>
+
+#include "harness/commands/verify_checks.h"
+#include "harness/commands/verify_table.h"
+
+namespace cleave {
+
+// Every cell reads as what its column holds; without that no other check of the rows is made. Returns whether so.
+bool check_cells(const StepsTable& table, const std::string& subject, CheckList& list);
+
+// Sums, orders and what a status implies, row by row.
+void check_rows_alone(const StepsTable& table, const std::string& subject, CheckList& list);
+
+// The solve of the row returned something to judge.
+bool has_result(const std::string& status);
+
+}  // namespace cleave

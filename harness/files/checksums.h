@@ -1,0 +1,24 @@
+// The file `checksums` of an output directory: SHA-256 of every other file, a line each, as sha256sum writes it, so
+// that `sha256sum -c checksums` checks them too. Written last: a directory without it was not finished.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace cleave {
+
+inline constexpr const char* kChecksumsFile = "checksums";
+
+// 64 hexadecimal digits. Throws std::runtime_error naming the file and the reason when it cannot be read.
+std::string sha256_of(const std::filesystem::path& path);
+
+// Of those of the names that are there. The same errors, and those of whole_file.h.
+void write_checksums(const std::filesystem::path& directory, const std::vector<std::string>& names);
+
+// Digits by name. Throws std::invalid_argument naming the file and the line that has another form, names a file
+// outside the directory, or names one for the second time.
+std::map<std::string, std::string> read_checksums(const std::filesystem::path& directory);
+
+}  // namespace cleave

@@ -1,0 +1,138 @@
+#include "harness/files/isolated_read.h"
+
+#include <fcntl.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
+namespace cleave {
+namespace {
+
+// The first byte that a child sends says what follows.
+constexpr char kValue = 'v', kError = 'e';
+constexpr int kChildFailed = 1;
+
+[[noreturn]] void fail(const std::string& subject, const std::string& text) {
+  throw std::invalid_argument(subject + ": " + text);
+}
+
+void set_limit(int resource, rlim_t most) {
+  rlimit limit{};
+  ::getrlimit(resource, &limit);
+  limit.rlim_cur = std::min(limit.rlim_max, std::min(limit.rlim_cur, most));
+  ::setrlimit(resource, &limit);
+}
+
+std::size_t address_space_bytes() {
+  unsigned long pages = 0;
+  if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
+    if (std::fscanf(file, "%lu", &pages) != 1) pages = 0;
+    std::fclose(file);
+  }
+  return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+// Crashes are what the child is for: they leave no core, run no handler of the parent's and print nothing. Interrupts are
+// taken as the parent takes them: where they end a run after the step at hand, its file is still read.
+void enter_child(const ReadLimits& limits) {
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGPIPE})
+    ::signal(signal, SIG_DFL);
+  set_limit(RLIMIT_CORE, 0);
+  set_limit(RLIMIT_CPU, static_cast<rlim_t>(limits.processor_s));
+  if (const std::size_t used = address_space_bytes(); used > 0)
+    set_limit(RLIMIT_AS, used + limits.memory_bytes);
+  const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+  for (const int printed : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, printed);
+}
+
+bool send(int pipe, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = ::write(pipe, bytes.data(), bytes.size());
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
+  }
+  return true;
+}
+
+// What is sent ends the child: no exit handler of the parent runs in it.
+[[noreturn]] void serve(int pipe, const std::function<std::string()>& read) {
+  char kind = kValue;
+  std::string bytes;
+  try {
+    bytes = read();
+  } catch (const std::exception& error) {
+    kind = kError;
+    bytes = error.what();
+  }
+  const bool sent = send(pipe, {&kind, 1}) && send(pipe, bytes);
+  ::_exit(sent ? 0 : kChildFailed);
+}
+
+std::string receive(int pipe) {
+  std::string bytes;
+  char block[1 << 16];
+  for (;;) {
+    const ssize_t count = ::read(pipe, block, sizeof block);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return bytes;
+    bytes.append(block, static_cast<std::size_t>(count));
+  }
+}
+
+int wait_for(pid_t child) {
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return status;
+}
+
+void check_end(const std::string& subject, const ReadLimits& limits, int status) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (signal == SIGXCPU)
+    fail(subject, "damaged: the HDF5 library had not read it after " + std::to_string(limits.processor_s) +
+                      " s of processor time");
+  const char* name = signal == 0 ? nullptr : ::sigabbrev_np(signal);
+  fail(subject, std::string("damaged: the HDF5 library crashed while reading it") +
+                    (name == nullptr ? "" : std::string(" (SIG") + name + ")"));
+}
+
+}  // namespace
+
+std::string read_in_child(const std::string& subject, const ReadLimits& limits,
+                          const std::function<std::string()>& read) {
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) fail(subject, std::string("cannot be read: pipe: ") + ::strerror(errno));
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::close(ends[0]);
+    enter_child(limits);
+    serve(ends[1], read);
+  }
+  const int reason = errno;
+  ::close(ends[1]);
+  std::string bytes;
+  if (child > 0) bytes = receive(ends[0]);
+  ::close(ends[0]);
+  if (child < 0) fail(subject, std::string("cannot be read: fork: ") + ::strerror(reason));
+  check_end(subject, limits, wait_for(child));
+  if (bytes.empty()) fail(subject, "damaged: the HDF5 library ended the reading of it");
+  const bool is_error = bytes.front() != kValue;
+  bytes.erase(0, 1);
+  if (is_error) throw std::invalid_argument(bytes);
+  return bytes;
+}
+
+void forbid_opening_files() { set_limit(RLIMIT_NOFILE, 0); }
+
+}  // namespace cleave

@@ -1,0 +1,198 @@
+"""What no command of scripts/ does with input that is wrong or output that cannot be written: a traceback, several lines, a
+wrong exit code, or any change to the files. Every command stands in command_table.py, with every option."""
+import concurrent.futures
+import contextlib
+import os
+import pathlib
+import re
+import resource
+import subprocess
+import tempfile
+import unittest
+
+from command_table import BAD, COMMANDS, NEAR
+from synthetic import SCRIPTS, write_matrix, write_steps
+
+# Answers what it would be known by, refuses what is called nope, and leaves a file where it is run.
+PROGRAM = """#!/bin/sh
+case "$*" in
+  *"--solver nope"*) echo "cleave run: --solver: 'nope' is unknown" >&2; exit 1 ;;
+  *nope*) echo "cleave run: --partitioner: 'nope' is unknown" >&2; exit 1 ;;
+  *--print-key*) echo '{"run_id": "1", "threads": 1, "git_hash": "f", "git_dirty": "false", "flags": "-march=x86-64-v3",
+    "build_type": "RelWithDebInfo", "cpu_model": "C", "cores": 2}'; exit 0 ;;
+esac
+touch ran
+exit 1
+"""
+GARBAGE = {"text": b"no such thing\n1,2\n", "bytes": bytes(range(128, 256)), "nothing": b"", "a header": b"x\n",
+           "a value": b"scene,step,status\nrock_pile,many,ok\n"}
+
+
+def files_of(directory):
+    """{path: what is there}"""
+    return {str(path): path.read_bytes() if path.is_file() else None for path in pathlib.Path(directory).rglob("*")}
+
+
+class Scratch:
+    """A directory for one command, with what its words mean."""
+
+    def __init__(self, directory):
+        self.root = pathlib.Path(directory)
+        self.names = {name: self.root / name for name in ("tree", "extremes", "empty", "file", "out")}
+        write_matrix(self.names["tree"])
+        write_steps(self.names["extremes"] / "ratio_1_x_cfm_0_seed_1", [{"status": "ok", "factorizations": 5}])
+        self.names["empty"].mkdir()
+        self.names["file"].write_text("no directory")
+        self.program = self.root / "cleave"
+        self.program.write_text(PROGRAM)
+        self.program.chmod(0o755)
+
+    def words(self, words):
+        return [word.format(**self.names) for word in words]
+
+    def run(self, command, *words, **options):
+        environment = dict(os.environ, CLEAVE_PROGRAM=str(self.program)) | options.pop("env", {})
+        options = {"stdout": subprocess.PIPE, **options}
+        return subprocess.run([SCRIPTS / command, *self.words(words)], cwd=self.names["empty"], env=environment,
+                              stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, timeout=300, check=False, **options)
+
+
+def fault(scratch, before, result, code=1, words=()):
+    """What is wrong with the end of a command that was given bad input; None where nothing is."""
+    said = result.stderr.decode(errors="replace")
+    if "Traceback" in said or result.returncode != code:
+        return f"exit code {result.returncode}: {said}"
+    if len(said.splitlines()) != (code == 1):
+        return f"not one line: {said}"
+    missing = [word for word in words if word not in said]
+    if missing:
+        return f"does not say {missing}: {said}"
+    return None if files_of(scratch.root) == before else "files have changed"
+
+
+def bad_values(command):
+    """(words, what has to be said) of every option and value that is wrong."""
+    for option, kind in COMMANDS[command].options.items():
+        if kind:
+            yield (option,), (option, "needs a")
+        for value in BAD[kind]:
+            yield (f"{option}={value}",) if command not in ("setup", "test") else (option, value), (
+                option.lstrip("-"), *([NEAR[value]] if value in NEAR else []))
+    if not COMMANDS[command].passes_on:
+        yield ("--no-such-option",), ("--no-such-option",)
+    if "--out" in COMMANDS[command].options:
+        yield ("--uot", "x"), ("did you mean --out?",)
+
+
+def faults_of_values(command):
+    """One line a value that is not refused as it has to be."""
+    found = []
+    with tempfile.TemporaryDirectory() as directory:
+        scratch = Scratch(directory)
+        before = files_of(scratch.root)
+        for words, told in bad_values(command):
+            given = [word for word in COMMANDS[command].given if word != words[0].partition("=")[0]]
+            kept = COMMANDS[command].given if given == list(COMMANDS[command].given) else ()
+            wrong = fault(scratch, before, scratch.run(command, *kept, *words), words=told)
+            if wrong:
+                found.append(f"{command} {' '.join(words)[:100]}: {wrong}")
+                before = files_of(scratch.root)
+    return found
+
+
+class TableTest(unittest.TestCase):
+
+    def test_every_command_stands_in_the_table(self):
+        self.assertEqual({path.name for path in SCRIPTS.iterdir() if path.is_file()}, set(COMMANDS))
+
+    def test_every_option_stands_in_the_table(self):
+        for name, command in COMMANDS.items():
+            text = subprocess.run([SCRIPTS / name, "--help"], capture_output=True, text=True, check=True).stdout
+            self.assertEqual(set(re.findall(r"^  (?:-h, )?(--[\w-]+)", text, re.M)) - {"--help"}, set(command.options), name)
+
+
+class BadInputTest(unittest.TestCase):
+
+    def setUp(self):
+        directory = tempfile.TemporaryDirectory()
+        self.addCleanup(directory.cleanup)
+        self.scratch = Scratch(directory.name)
+        self.before = files_of(self.scratch.root)
+
+    def check(self, result, code=1, words=()):
+        self.assertIsNone(fault(self.scratch, self.before, result, code, words))
+
+    def test_every_bad_value_of_every_option(self):
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            found = [line for lines in pool.map(faults_of_values, COMMANDS) for line in lines]
+        self.assertEqual(found, [], "\n".join(found))
+
+    def test_a_program_that_cannot_be_run(self):
+        for name, command in COMMANDS.items():
+            if command.runs and name != "reference":  # which looks at the checkout first
+                with self.subTest(name):
+                    result = self.scratch.run(name, *command.given, "--out", "{out}", env={"CLEAVE_PROGRAM": "/nowhere"})
+                    self.check(result, words=["CLEAVE_PROGRAM is '/nowhere', which cannot be run"])
+
+    def test_output_that_nobody_takes(self):
+        for name, command in COMMANDS.items():
+            for words in (("--help",), command.prints):
+                if words:
+                    with self.subTest(name, words=words):
+                        with open("/dev/full", "wb") as full:
+                            self.check(self.scratch.run(name, *words, stdout=full), words=["No space left on device"])
+                        with self.closed_pipe() as pipe:
+                            self.check(self.scratch.run(name, *words, stdout=pipe), code=141)
+
+    @contextlib.contextmanager
+    def closed_pipe(self):
+        reader, writer = os.pipe()
+        os.close(reader)
+        try:
+            yield writer
+        finally:
+            os.close(writer)
+
+    def test_directories_that_are_not_there_or_hold_nothing(self):
+        for name, command in COMMANDS.items():
+            for place in command.reads:
+                for value in ("", "{file}", "{out}/nowhere", "{empty}"):
+                    if value == "{file}" and name in ("table1", "check_matrix", "validate_model", "extremes_table"):
+                        value = "{out}"  # they read files too
+                    with self.subTest(name, value=value):
+                        self.check(self.scratch.run(name, *(value if word == place else word for word in command.given)))
+
+    def test_files_that_hold_something_else(self):
+        for file in ("steps.csv", "motion.h5"):
+            for what, content in GARBAGE.items():
+                (self.scratch.names["empty"] / file).write_bytes(content)
+                self.before = files_of(self.scratch.root)
+                for name, command in COMMANDS.items():
+                    if command.reads and not (what == "a header" and name == "readme_tables"):
+                        with self.subTest(name, file=file, what=what):
+                            given = ("{empty}" if word in command.reads else word for word in command.given)
+                            self.check(self.scratch.run(name, *given))
+            (self.scratch.names["empty"] / file).unlink()
+
+    def test_results_beside_their_input_have_a_place_that_can_be_written(self):
+        tree = self.scratch.names["tree"]
+        (tree / "figures").write_text("no directory")
+        (tree / "viewer.html").mkdir()
+        self.before = files_of(self.scratch.root)
+        for name in ("report", "render_figures"):
+            self.check(self.scratch.run(name, "{tree}"), words=["figures"])
+        self.check(self.scratch.run("view", "{tree}"), words=["viewer.html"])
+
+    def test_a_file_that_cannot_be_written_whole_stays_as_it_was(self):
+        def no_room():
+            resource.setrlimit(resource.RLIMIT_FSIZE, (10, 10))
+
+        (self.scratch.root / "file.csv").write_text("old")
+        self.before = files_of(self.scratch.root)
+        result = self.scratch.run("extremes_table", "{extremes}", "--csv", str(self.scratch.root / "file.csv"),
+                                  preexec_fn=no_room)
+        self.check(result, words=["file.csv: cannot be written: File too large"])
+
+
+if __name__ == "__main__":
+    unittest.main()

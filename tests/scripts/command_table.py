@@ -1,0 +1,84 @@
+"""Every command of scripts/ as the tests of bad input have to know it: what it takes, and what it reads.
+
+Words may hold {tree}, output directories of good rows; {empty}, a directory; {file}, a file; {out}, where nothing is yet.
+"""
+import dataclasses
+
+
+@dataclasses.dataclass(frozen=True)
+class Command:
+    options: dict  # option: its kind, a key of BAD; "" where it takes no value
+    given: tuple = ()  # what it cannot do without
+    reads: tuple = ()  # which words of `given` are directories that it reads
+    prints: tuple = ()  # words with which it prints results of {tree} at once
+    runs: bool = False  # the program, which CLEAVE_PROGRAM names
+    passes_on: bool = False  # options that it does not know are for another program
+
+
+# What is wrong with a value of every kind; NAME is replaced by a name that is right.
+BAD = {
+    "": (),
+    "count": ("", "0", "-1", "nan", "3,", "1e3"),
+    "counts": ("", "3,", "3,,4", "0", "-1", "nan"),
+    "seed": ("", "-1", "nan", "3,"),
+    "seeds": ("", "3,", "-1", "nan"),
+    "seconds": ("", "0", "-1", "nan", "inf", "3,"),
+    "compliances": ("", "0,", "-1", "nan", "soft"),
+    "range": ("", "1,", "2,1", "nan,1", "x"),
+    "scenes": ("", "chain_drop,", "rock_pill"),
+    "rungs": ("", "no_contact,", "no_contract"),
+    "climbers": ("", "exact,", "exakt", "nope:nope"),
+    "partitioners": ("", "nope"),
+    "constants": ("", "reach,", "reech"),
+    "recorded compliances": ("", "0,", "1e-7"),
+    "solver": ("", "shur"),
+    "format": ("", "markdow"),
+    "condition": ("", "solver", "=schur"),
+    "figures": ("", "figure1,", "figure9"),
+    "colour": ("", "parts"),
+    "preset": ("", "relase"),
+    "target": ("",),
+    "input directory": ("", "{file}", "{out}/nowhere"),
+    "output directory": ("", "{file}", "{file}/below/it", "/proc/nowhere", "{out}/" + 300 * "x"),
+    "output file": ("", "{empty}", "{file}/below", "/dev/full", "{out}/" + 300 * "x"),
+}
+# What a misspelt name is like, by the text that was given.
+NEAR = {
+    "rock_pill": "rock_pile", "no_contract": "no_contact", "exakt": "exact", "reech": "reach", "shur": "schur",
+    "markdow": "markdown", "figure9": "figure", "parts": "part"
+}
+
+MEASURED = {"--out": "output directory"}
+SERIES = {"--steps": "count", "--measure-every": "count", "--force": "", **MEASURED}
+TIMED = {**SERIES, "--repeats": "count", "--threads": "count", "--seed": "seed"}
+COMMANDS = {
+    "ablate_interior_point": Command({"--scene": "scenes", "--cfm": "recorded compliances", "--constant": "constants",
+                                      **MEASURED}, runs=True),
+    "ablation": Command(MEASURED, runs=True),
+    "benchmark_dense": Command({"--repetitions": "count", **MEASURED}, runs=True),
+    "benchmark_partitioners": Command({"--repetitions": "count", **MEASURED}, runs=True),
+    "benchmark_solvers": Command({"--repetitions": "count", "--print-only": "", **MEASURED}, runs=True),
+    "busy_machine": Command({"--rounds": "count", **MEASURED}, runs=True),
+    "check_matrix": Command({"--scene": "scenes", "--min-steps": "count"}, ("{tree}",), ("{tree}",), ("{tree}",)),
+    "cold_starts": Command({"--seeds": "seeds", **MEASURED}, runs=True),
+    "extremes": Command({"--cfm": "compliances", "--seeds": "seeds", **SERIES}, runs=True),
+    "extremes_table": Command({"--csv": "output file"}, ("{extremes}",), ("{extremes}",), ("{extremes}",)),
+    "idle_cost": Command({"--rounds": "count", **MEASURED}, runs=True),
+    "ladder": Command({"--full": "", "--rung": "rungs", "--solver": "climbers", "--steps": "count", "--timeout": "seconds",
+                       "--jobs": "count", **MEASURED}, runs=True),
+    "readme_figures": Command(MEASURED, ("{tree}",), ("{tree}",)),
+    "readme_tables": Command({"--check": "", "--root": "input directory"}, ("--root", "{empty}"), ("{empty}",)),
+    "reference": Command({"--root": "input directory"}, ("--root", "{empty}"), ("{empty}",), runs=True),
+    "render_figures": Command({"--only": "figures", "--every": "count", "--columns": "count", "--colour": "colour",
+                               "--width": "count", **MEASURED}, ("{tree}",), ("{tree}",)),
+    "report": Command({"--solver": "solver"}, ("{tree}",), ("{tree}",)),
+    "report_runs": Command(TIMED, runs=True),
+    "reproduce": Command({"--full": "", "--scene": "scenes", **TIMED}, runs=True),
+    "scaling": Command({"--sizes": "counts", "--partitioner": "partitioners", **TIMED}, runs=True),
+    "setup": Command({"--preset": "preset", "--target": "target"}),
+    "table1": Command({"--format": "format", "--where": "condition"}, ("{tree}",), ("{tree}",), ("{tree}",)),
+    "test": Command({"--preset": "preset"}, passes_on=True),
+    "two_threads": Command({"--rounds": "count", **MEASURED}, runs=True),
+    "validate_model": Command({"--limit": "range"}, ("{tree}", "{tree}"), ("{tree}",)),
+    "view": Command({"--out": "output file"}, ("{tree}",), ("{tree}",)),
+}
