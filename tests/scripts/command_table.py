@@ -36,6 +36,7 @@ BAD = {
     "condition": ("", "solver", "=schur"),
     "figures": ("", "figure1,", "figure9"),
     "colour": ("", "parts"),
+    "fuzz targets": ("", "csv,", "scen"),
     "preset": ("", "relase"),
     "target": ("",),
     "input directory": ("", "{file}", "{out}/nowhere"),
@@ -45,7 +46,7 @@ BAD = {
 # What a misspelt name is like, by the text that was given.
 NEAR = {
     "rock_pill": "rock_pile", "no_contract": "no_contact", "exakt": "exact", "reech": "reach", "shur": "schur",
-    "markdow": "markdown", "figure9": "figure", "parts": "part"
+    "markdow": "markdown", "figure9": "figure", "parts": "part", "scen": "scene"
 }
 
 MEASURED = {"--out": "output directory"}
@@ -63,6 +64,7 @@ COMMANDS = {
     "cold_starts": Command({"--seeds": "seeds", **MEASURED}, runs=True),
     "extremes": Command({"--cfm": "compliances", "--seeds": "seeds", **SERIES}, runs=True),
     "extremes_table": Command({"--csv": "output file"}, ("{extremes}",), ("{extremes}",), ("{extremes}",)),
+    "fuzz": Command({"--minutes": "count", "--target": "fuzz targets", "--minimise": "", "--page": "output file", **MEASURED}),
     "idle_cost": Command({"--rounds": "count", **MEASURED}, runs=True),
     "ladder": Command({"--full": "", "--rung": "rungs", "--solver": "climbers", "--steps": "count", "--timeout": "seconds",
                        "--jobs": "count", **MEASURED}, runs=True),

@@ -9,9 +9,10 @@ import subprocess
 import tempfile
 import time
 
+from cleave_scripts.results.command import say
 from cleave_scripts.results.command_line import counted
-from cleave_scripts.results.errors import ResultError
-from cleave_scripts.results.programs import ROOT
+from cleave_scripts.results.errors import AlreadyTold, ResultError
+from cleave_scripts.results.programs import ROOT, run_and_watch
 
 TARGETS = ("csv", "manifest", "options", "scene", "problem")
 SOURCES = ROOT / "tests" / "fuzz"
@@ -30,15 +31,17 @@ class Result:
     findings: list
 
 
-def find_programs():
-    """The folder of the programs; CLEAVE_FUZZ_PROGRAMS, or what is built now."""
+def find_programs(about):
+    """The folder of the programs: CLEAVE_FUZZ_PROGRAMS, or where they are built now. about: what is said of the work."""
     given = os.environ.get("CLEAVE_FUZZ_PROGRAMS")
-    if given:
-        return pathlib.Path(given).resolve()
+    folder = pathlib.Path(given).resolve() if given else ROOT / "build" / "fuzz" / "tests" / "fuzz"
+    if given and not all(os.access(folder / f"fuzz_{name}", os.X_OK) for name in TARGETS):
+        raise ResultError(f"CLEAVE_FUZZ_PROGRAMS is '{given}', which does not hold fuzz_{', fuzz_'.join(TARGETS)}")
+    say(about + ("" if given else ", up to 6 more where nothing is built"))
     setup = [ROOT / "scripts" / "setup", "--preset", "fuzz", "--target", "fuzz_all"]
-    if subprocess.run(setup, check=False).returncode != 0:
-        raise ResultError("set-up failed")
-    return ROOT / "build" / "fuzz" / "tests" / "fuzz"
+    if not given and subprocess.run(setup, check=False).returncode != 0:
+        raise AlreadyTold
+    return folder
 
 
 def command(programs, name, *arguments):
@@ -50,10 +53,7 @@ def command(programs, name, *arguments):
 def run(words, log):
     """The exit code: not 0 where an input is a finding, or where the program fails by itself."""
     with open(log, "w", encoding="utf-8") as file:
-        try:
-            return subprocess.run(words, stdout=file, stderr=subprocess.STDOUT, check=False).returncode
-        except FileNotFoundError:
-            raise ResultError(f"{words[0]} is not built; run scripts/setup --preset fuzz --target fuzz_all") from None
+        return run_and_watch(words, stdout=file, stderr=subprocess.STDOUT)
 
 
 def fuzz(programs, name, out, seconds):
