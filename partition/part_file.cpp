@@ -49,7 +49,7 @@ std::vector<int> read_ids(const std::string& path) {
 int checked_part_count(const std::string& path, const std::vector<int>& ids) {
   std::vector<int> used = ids;
   std::ranges::sort(used);
-  used.erase(std::ranges::unique(used).begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
   const int parts = static_cast<int>(used.size());
   for (std::size_t i = 0; i < ids.size(); ++i)
     if (ids[i] >= parts)

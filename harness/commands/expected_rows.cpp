@@ -115,9 +115,6 @@ void ExpectedRows::add_combinations(const StoredManifest& manifest) {
       row.add_parameters(algorithm->settings);
     combinations_.push_back(row);
   };
-  const auto uses_parts = [](const Algorithm& solver) {
-    return make_solver(solver, 1, StepContext{})->uses_partition();
-  };
   for (const Algorithm& partitioner : stored_list(manifest, "partitioner"))
     for (const Algorithm& refiner : stored_list(manifest, "refiner"))
       for (const Algorithm& solver : solvers)

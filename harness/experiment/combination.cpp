@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <cstring>
 #include <iterator>
 #include <new>
 
@@ -46,7 +45,7 @@ Outcome unsolved(const StepProblem& problem, SolveStatus status, const std::stri
 }
 
 bool same_bytes(std::span<const double> a, std::span<const double> b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
+  return std::ranges::equal(std::as_bytes(a), std::as_bytes(b));
 }
 
 // Index of the median of a number per repeat; the lower middle one of an even number.

@@ -2,6 +2,7 @@
 #include "harness/commands/motion_recorder.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <signal.h>
 
 #include <atomic>
@@ -265,26 +266,27 @@ TEST(Motion, IsRefusedWhereItMeansNothing) {
   refused({}, "already holds motion.h5");
 }
 
-// A run that would take very long, ended by a signal as soon as something of it is on disk.
+// A run that would take very long, ended by a signal as soon as so much of it is on disk.
 struct Ended {
   TemporaryDirectory directory;
   int exit_code = -1;
   std::filesystem::path path() const { return directory / "out/motion.h5"; }
+  std::filesystem::path part() const { return directory / "out/motion.h5.part"; }
 };
 
-void end_by(int signal, Ended& ended) {
+void end_by(int signal, std::uintmax_t bytes, Ended& ended) {
   const pid_t process = start_cleave({"run", "--scene", "rock_pile", "--bodies", "20", "--partitioner", "mix",
                                       "--refiner", "fm", "--repeats", "1", "--steps", "1000000",
                                       "--record-motion", "--out", ended.directory / "out"});
   std::error_code error;
-  for (int waited = 0; waited < 3000; ++waited) {
-    const auto size = std::filesystem::file_size(ended.path(), error);
-    if (!error && size > 200000) break;
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  for (int waited = 0; waited < 30000; ++waited) {
+    const auto size = std::filesystem::file_size(ended.part(), error);
+    if (!error && size >= bytes) break;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   ::kill(process, signal);
   ended.exit_code = finish_cleave(process);
-  ASSERT_FALSE(error) << "motion.h5 was never written";
+  ASSERT_FALSE(error) << "motion.h5.part was never written";
 }
 
 std::size_t length_of(const Hdf5Handle& file, const std::string& name) {
@@ -298,9 +300,10 @@ std::size_t length_of(const Hdf5Handle& file, const std::string& name) {
 TEST(Motion, CanBeReadAfterTheRunWasKilled) {
   for (int attempt = 0; attempt < 3; ++attempt) {
     Ended ended;
-    end_by(SIGKILL, ended);
+    end_by(SIGKILL, 200000, ended);
     EXPECT_EQ(ended.exit_code, 128 + SIGKILL);
-    const Hdf5Handle file(H5Fopen(ended.path().c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT),
+    EXPECT_FALSE(std::filesystem::exists(ended.path()));
+    const Hdf5Handle file(H5Fopen(ended.part().c_str(), H5F_ACC_RDONLY | H5F_ACC_SWMR_READ, H5P_DEFAULT),
                           H5Fclose);
     ASSERT_TRUE(file.valid());
     const std::size_t steps = length_of(file, "step");
@@ -318,10 +321,42 @@ TEST(Motion, CanBeReadAfterTheRunWasKilled) {
   }
 }
 
+// However early: what bears the name is a whole file.
+TEST(Motion, KilledAtOnceLeavesNothingUnderItsName) {
+  Ended ended;
+  end_by(SIGKILL, 0, ended);
+  EXPECT_EQ(ended.exit_code, 128 + SIGKILL);
+  EXPECT_FALSE(std::filesystem::exists(ended.path()));
+}
+
+// Of the steps that are on disk nothing stays in memory.
+TEST(Motion, MemoryDoesNotGrowWithTheSteps) {
+  constexpr int kBodies = 40, kWarmUp = 500, kMeasured = 2000;
+  const TemporaryDirectory directory;
+  MotionSetup setup;
+  setup.labels = {"mix+fm+schur"};
+  setup.mass_kg.assign(kBodies, 1.0);
+  MotionFile file(directory / "motion.h5", setup);
+  std::mt19937_64 random(3);  // what compresses badly
+  std::size_t before = 0;
+  for (int step = 0; step < kWarmUp + kMeasured; ++step) {
+    if (step == kWarmUp) before = ::mallinfo2().uordblks;
+    std::vector<MotionPose> poses(kBodies);
+    for (MotionPose& pose : poses)
+      for (double& value : pose.position_m) value = static_cast<double>(random());
+    file.add_poses(step, poses);
+    file.end_step();
+  }
+  const std::size_t after = ::mallinfo2().uordblks;
+  EXPECT_LT(after, before + 64 * kMeasured) << after - std::min(before, after) << " bytes more";
+  file.publish();
+}
+
 TEST(Motion, AnInterruptedRunLeavesAFinishedFile) {
   Ended ended;
-  end_by(SIGINT, ended);
+  end_by(SIGINT, 200000, ended);
   EXPECT_EQ(ended.exit_code, 130);
+  EXPECT_FALSE(std::filesystem::exists(ended.part()));
   const Hdf5Reader reader(ended.path());  // in the ordinary mode
   EXPECT_EQ(reader.length("position"), reader.length("step"));
   const std::size_t rows = read_csv(ended.directory / "out/steps.csv").rows.size();

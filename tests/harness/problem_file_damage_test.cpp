@@ -69,7 +69,10 @@ std::vector<Damage> damaged_values() {
       {"body_negative", {"row_body[2] = -2"}, p([](auto& q) { q.row_body[2] = -2; })},
       {"unknown_kind", {"row_kind[4] = 9"}, p([](auto& q) { q.row_kind[4] = static_cast<RowKind>(9); })},
       {"friction_of_no_normal", {"friction_row[5] = 0"}, p([](auto& q) { q.friction_row[5] = 0; })},
-      {"friction_of_other_bodies", {"friction_row[5] = 6", "between the same bodies"}, p([](auto& q) {
+      {"friction_of_other_bodies", {"friction_row[7] = 4", "between the same bodies"}, p([](auto& q) {
+         q.friction_row[7] = 4;
+       })},
+      {"friction_before_its_normal", {"friction_row[5] = 6", "a normal row before it"}, p([](auto& q) {
          q.friction_row[5] = 6;
        })},
       {"friction_named_by_no_friction", {"friction_row[0] = 4", "-1"}, p([](auto& q) {

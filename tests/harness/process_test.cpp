@@ -124,7 +124,9 @@ TEST(FullDisk, ADeviceThatIsFullIsNamed) {
 TEST(FullDisk, AManifestThatCannotBeWrittenAgainDoesNotSayRunning) {
   const TemporaryDirectory directory;
   const fs::path path = directory / "manifest.json";
-  const WorkDescription description{"run", {}, "id", {}, {}, {}, {}};
+  WorkDescription description;
+  description.command = "run";
+  description.run_id = "id";
   const auto take_name = [&] { fs::create_directory(path.string() + ".part"); };
   const auto work_fails = [&]() -> WorkResult {
     take_name();

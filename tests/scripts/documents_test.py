@@ -21,6 +21,7 @@ USED_BY = {
     "libopenblas-dev": ("tests/CMakeLists.txt", "openblas"),
     "libcli11-dev": ("CMakeLists.txt", "CLI11"),
     "libhdf5-dev": ("CMakeLists.txt", "HDF5"),
+    "libssl-dev": ("CMakeLists.txt", "OpenSSL"),
     "nlohmann-json3-dev": ("CMakeLists.txt", "nlohmann_json"),
     "libtomlplusplus-dev": ("CMakeLists.txt", "toml++"),
     "libgtest-dev": ("tests/CMakeLists.txt", "GTest"),

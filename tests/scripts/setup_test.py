@@ -155,14 +155,15 @@ class TestScriptTest(StandInTest):
             self,
             output="1/1 Test #1: a ...   Passed   0.01 sec\n100% tests passed, 0 tests failed out of 1\n",
             full_log="",
-            code=0):
-        for preset in ("release", "tsan"):
+            code=0,
+            fails="/build/"):
+        for preset in ("release", "asan", "tsan"):
             log = self.root / "build" / preset / "Testing" / "Temporary" / "LastTest.log"
             log.parent.mkdir(parents=True, exist_ok=True)
             log.write_text(full_log)
         (self.directory / "output").write_text(output)
-        self.stand_in("ctest",
-                      f'#!/bin/bash\necho "ctest $*" >>"$FAKE/log"\ncat "$FAKE/output"\nexit {code}\n')
+        self.stand_in("ctest", f'#!/bin/bash\necho "ctest $*" >>"$FAKE/log"\ncat "$FAKE/output"\n'
+                      f'[[ "$*" == *{fails}* ]] || exit 0\nexit {code}\n')
 
     def test_sets_up_runs_and_ends_with_ctests_verdict(self):
         result = self.run_program(self.root / "scripts" / "test", "-R", "partition")
@@ -198,6 +199,16 @@ class TestScriptTest(StandInTest):
 
     def test_ci_run_passes_when_everything_does(self):
         self.assertEqual(self.run_program(self.root / ".ci" / "run").returncode, 0)
+        self.assertEqual([line for line in self.log() if line.startswith("setup")],
+                         ["setup --preset release", "setup --preset asan"])
+
+    def test_either_preset_fails_ci_run(self):
+        for preset in ("release", "asan"):
+            with self.subTest(preset):
+                (self.directory / "log").write_text("")
+                self.ctest("0% tests passed, 1 tests failed out of 1\n", code=8, fails=f"/build/{preset}")
+                self.assertEqual(self.run_program(self.root / ".ci" / "run").returncode, 8)
+                self.assertEqual(len(self.log()), 4)  # the other one ran too
 
 
 if __name__ == "__main__":

@@ -60,8 +60,6 @@ def read_tree(directory):
     if ladders:
         tree.ladder = _attempt(tree, _read_ladder, ladders[0])
         tree.messages += [f"{path}: left out, the ladder is taken from {ladders[0]}" for path in ladders[1:]]
-    if not tree.experiments and tree.ladder is None:
-        raise ResultError(f"nothing can be drawn: {'; '.join(tree.messages)}")
     return tree
 
 

@@ -1,0 +1,68 @@
+"""A short run of every scene, with every partitioner, refiner and solver, on two threads, in a build with sanitisers."""
+import csv
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CLEAVE = pathlib.Path(os.environ["CLEAVE_BINARY_DIR"]) / "cleave"
+
+# Steps until bodies lie on each other, and sizes with several parts.
+RUNS = {
+    "chain_drop": (60, "--links", "30"),
+    "log_tower": (70, "--layers", "4", "--logs", "3"),
+    "rock_pile": (80, "--bodies", "30"),
+    "large_rock_pile": (80, "--bodies", "40", "--rock-shape", "convex"),
+    "ladder_stack": (10, "--copies", "2"),
+    "ladder_heavy_top": (10,),
+    "ladder_alternating": (10,),
+    "ladder_incline": (10, "--boxes", "6"),
+    "ladder_chain": (10,),
+    "ladder_loop": (10, "--links", "12"),
+    "ladder_free": (10, "--boxes", "6"),
+}
+PILE = ROOT / "scenarios" / "files" / "pile.toml"
+
+
+def cleave(*arguments):
+    return subprocess.run([CLEAVE, *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+def names(what):
+    return cleave("list", what, "--names").stdout.split()
+
+
+class ScenesTest(unittest.TestCase):
+
+    def run_scene(self, scene, *size, steps):
+        """Two measured steps; both threads have something to do."""
+        solvers = ",".join(names("solvers") + [f"{strategy}:{kernel}" for strategy in ("pivot", "interior-point")
+                                               for kernel in ("schur-rows", "schur-bodies")])
+        with tempfile.TemporaryDirectory() as directory:
+            done = cleave("run", "--scene", scene, *size, "--partitioner", "all", "--refiner", "all", "--max-bodies", 3,
+                          "--solver", solvers, "--repeats", 1, "--threads", 2, "--steps", steps,
+                          "--measure-every", steps // 2, "--out", f"{directory}/out")
+            self.assertIn(done.returncode, (0, 2), done.stderr[-4000:])  # 2: not every solver is exact
+            with open(f"{directory}/out/steps.csv", newline="", encoding="utf-8") as file:
+                rows = list(csv.DictReader(file))
+        combinations = {(row["partitioner"], row["refiner"]) for row in rows if row["solver"] == "schur"}
+        self.assertEqual(len(combinations), (len(names("partitioners")) - 1) * len(names("refiners")))  # but for file
+        self.assertGreater(max(int(row["parts"]) for row in rows), 1)
+        self.assertEqual(len({row["step"] for row in rows}), 2)
+
+    def test_every_scene_has_a_run(self):
+        self.assertEqual(set(names("scenes")), {"file", *RUNS})
+
+    def test_every_scene_runs(self):
+        for scene, (steps, *size) in RUNS.items():
+            with self.subTest(scene):
+                self.run_scene(scene, *size, steps=steps)
+
+    def test_a_scene_of_a_file_runs(self):
+        self.run_scene(f"file@path={PILE}", steps=20)
+
+
+if __name__ == "__main__":
+    unittest.main()
