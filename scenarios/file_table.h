@@ -13,8 +13,9 @@
 // Some damaged files break the library's assertions, which are errors of the file like any other.
 namespace cleave::scene_file {
 struct TomlAssertion {};
+[[noreturn]] void throw_toml_assertion();
 }  // namespace cleave::scene_file
-#define TOML_ASSERT(condition) ((condition) ? void() : throw cleave::scene_file::TomlAssertion())
+#define TOML_ASSERT(condition) ((condition) ? void() : cleave::scene_file::throw_toml_assertion())
 #include <toml++/toml.h>
 
 namespace cleave::scene_file {

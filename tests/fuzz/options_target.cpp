@@ -3,6 +3,8 @@
 // The first line of the bytes is a command (run, record, replay), each other line one argument; lines that begin with
 // "= " are options that a manifest holds, "= name=value".
 #include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
 #include <algorithm>
 #include <map>
 #include <sstream>
