@@ -4,13 +4,13 @@
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <functional>
 #include <new>
 #include <span>
 #include <stdexcept>
 
 #include "harness/base/names.h"
+#include "harness/base/printable_text.h"
 #include "harness/base/standard_streams.h"
 #include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
@@ -73,9 +73,9 @@ int guarded(const std::string& name, const std::function<int()>& work) {
   try {
     return work();
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "%s: out of memory\n", name.c_str());
+    say(name + ": out of memory");
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "%s: %s\n", name.c_str(), error.what());
+    say(name + ": " + error.what());
   }
   return kExitBadInput;
 }

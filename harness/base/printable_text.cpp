@@ -52,4 +52,6 @@ std::string printable(std::string_view text) {
   return shown;
 }
 
+void say(std::string_view text) { std::fprintf(stderr, "%s\n", printable(text).c_str()); }
+
 }  // namespace cleave

@@ -12,4 +12,7 @@ bool is_printable_utf8(std::string_view text);
 // The text with every byte outside ASCII's printable ones as \x0a, where it is not printable; else the text itself.
 std::string printable(std::string_view text);
 
+// One line on standard error, whatever the text holds: arguments and names of files come from anywhere.
+void say(std::string_view text);
+
 }  // namespace cleave

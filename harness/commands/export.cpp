@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/base/names.h"
+#include "harness/base/printable_text.h"
 #include "harness/commands/command.h"
 #include "harness/experiment/problem_graph.h"
 #include "harness/files/problem_file.h"
@@ -60,8 +61,8 @@ int export_graph(const ExportOptions& options) {
   const BodyGraph graph = body_graph_of(file.problem, file.step);
   for (const ExportFormat& format : kFormats)
     if (options.format == format.name) write_whole_file(options.out, format.text(graph));
-  std::fprintf(stderr, "%s: %d bodies, %d edges\n", options.out.c_str(), graph.body_count(),
-               graph.edge_count());
+  say(options.out + ": " + std::to_string(graph.body_count()) + " bodies, " +
+      std::to_string(graph.edge_count()) + " edges");
   return kExitOk;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "harness/base/printable_text.h"
 #include "harness/commands/command.h"
 #include "harness/experiment/step_record.h"
 #include "harness/files/checksums.h"
@@ -78,7 +79,7 @@ WorkDescription describe_work(const std::string& command, const std::vector<std:
 }
 
 void print_left_out(const RunOptions& options) {
-  for (const std::string& line : options.left_out) std::fprintf(stderr, "%s\n", line.c_str());
+  for (const std::string& line : options.left_out) say(line);
 }
 
 }  // namespace cleave

@@ -11,6 +11,7 @@
 
 #include "harness/base/hash.h"
 #include "harness/base/numbers.h"
+#include "harness/base/printable_text.h"
 #include "harness/commands/stored_partition.h"
 #include "harness/experiment/algorithms.h"
 #include "harness/experiment/problem_graph.h"
@@ -128,12 +129,10 @@ void check_friction_model(const std::string& model, const std::string& subject, 
 void CheckList::add(bool passed, const std::string& subject, const std::string& text) {
   ++checks_;
   failures_ += passed ? 0 : 1;
-  std::printf("%s  %s: %s\n", passed ? "ok  " : "FAIL", subject.c_str(), text.c_str());
+  std::printf("%s  %s\n", passed ? "ok  " : "FAIL", printable(subject + ": " + text).c_str());
 }
 
-void CheckList::note(const std::string& subject, const std::string& text) {
-  std::fprintf(stderr, "%s: %s\n", subject.c_str(), text.c_str());
-}
+void CheckList::note(const std::string& subject, const std::string& text) { say(subject + ": " + text); }
 
 void Findings::add(const std::string& text) {
   if (++count_ <= kTold) told_ += "; " + text;

@@ -6,12 +6,12 @@
 
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
 
+#include "harness/base/printable_text.h"
 #include "harness/files/build_info.h"
 
 namespace cleave {
@@ -110,8 +110,7 @@ void DirectoryLock::take_over_or_refuse() const {
     throw std::invalid_argument(
         "--out: " + path_.string() + " was left by " + who(owner) +
         ", which cannot be checked from here; delete the file if that process has ended");
-  std::fprintf(stderr, "%s: left by %s, which has ended without its last word; taken over\n", path_.c_str(),
-               who(owner).c_str());
+  say(path_.string() + ": left by " + who(owner) + ", which has ended without its last word; taken over");
 }
 
 void DirectoryLock::write_owner(const std::string& command) const {

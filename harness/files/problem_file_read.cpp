@@ -177,7 +177,7 @@ ProblemFile read_problem_file(const fs::path& path) {
 ProblemFile read_problem_file_aloud(const fs::path& path) {
   ProblemFile file = read_problem_file(path);
   if (!file.is_checked)
-    std::fprintf(stderr, "%s: unchecked: it carries no hashes that would tell a changed bit\n", path.c_str());
+    say(path.string() + ": unchecked: it carries no hashes that would tell a changed bit");
   return file;
 }
 

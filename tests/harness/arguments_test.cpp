@@ -67,6 +67,12 @@ TEST(Arguments, WhatNothingTakesIsRefused) {
   expect_refused({"replay", "file.h5", "--out", "--cold"}, "--out: needs a value");
 }
 
+TEST(Arguments, ControlCharactersAreShownAndNotPrinted) {
+  expect_refused({"verify", "a\nb"}, "cleave verify: a\\x0ab: ");
+  expect_refused({"\033[31m"}, "cleave \\x1b[31m: ");
+  expect_refused({"list", "\033[31m"}, "\\x1b[31m");
+}
+
 TEST(Arguments, FileNamesMayStandBehindTwoDashes) {
   const TemporaryDirectory directory;
   const std::string steps = directory / "recorded";

@@ -262,7 +262,7 @@ TEST(JointRows, OtherTypesAreRefusedByName) {
   };
   for (const auto& [name, create] : types) {
     expect_refused(
-        [create](dWorldID w, SceneContent& content) {
+        [create = create](dWorldID w, SceneContent& content) {
           const dJointID joint = create(w, nullptr);
           const bool needs_static = dJointGetType(joint) == dJointTypePlane2D;
           dJointAttach(joint, content.bodies[0], needs_static ? nullptr : content.bodies[1]);

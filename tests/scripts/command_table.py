@@ -39,6 +39,7 @@ BAD = {
     "fuzz targets": ("", "csv,", "scen"),
     "preset": ("", "relase"),
     "target": ("",),
+    "trials": ("", "edits,", "edit"),
     "input directory": ("", "{file}", "{out}/nowhere"),
     "output directory": ("", "{file}", "{file}/below/it", "/proc/nowhere", "{out}/" + 300 * "x"),
     "output file": ("", "{empty}", "{file}/below", "/dev/full", "{out}/" + 300 * "x"),
@@ -46,7 +47,8 @@ BAD = {
 # What a misspelt name is like, by the text that was given.
 NEAR = {
     "rock_pill": "rock_pile", "no_contract": "no_contact", "exakt": "exact", "reech": "reach", "shur": "schur",
-    "markdow": "markdown", "figure9": "figure", "parts": "part", "scen": "scene"
+    "markdow": "markdown", "figure9": "figure", "parts": "part",
+    "edit": "edits", "scen": "scene"
 }
 
 MEASURED = {"--out": "output directory"}
@@ -80,6 +82,8 @@ COMMANDS = {
     "setup": Command({"--preset": "preset", "--target": "target"}),
     "table1": Command({"--format": "format", "--where": "condition"}, ("{tree}",), ("{tree}",), ("{tree}",)),
     "test": Command({"--preset": "preset"}, passes_on=True),
+    "torture": Command({"--minutes": "count", "--seed": "seed", "--trials": "trials", "--count": "count", "--only": "seed",
+                        "--patience": "count", **MEASURED}, ("--minutes", "1"), runs=True),
     "two_threads": Command({"--rounds": "count", **MEASURED}, runs=True),
     "validate_model": Command({"--limit": "range"}, ("{tree}", "{tree}"), ("{tree}",)),
     "view": Command({"--out": "output file"}, ("{tree}",), ("{tree}",)),

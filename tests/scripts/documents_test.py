@@ -1,4 +1,5 @@
 """What the documents and lists say agrees with the sources."""
+import json
 import re
 import subprocess
 import unittest
@@ -29,15 +30,24 @@ USED_BY = {
     "libmetis-dev": ("tests/CMakeLists.txt", "metis"),
     "python3": ("tests/CMakeLists.txt", "python3"),
     "chromium": ("tests/scripts/browser.py", "chromium"),
+    "clang": ("CMakePresets.json", "clang"),
+    "libclang-rt-14-dev": ("CMakePresets.json", "thread"),
+    "llvm-14": ("tests/sanitised/sanitised.cmake", "llvm-symbolizer"),
+    "libomp-14-dev": ("tests/sanitised/sanitised.cmake", "archer"),
     "qemu-user": ("tests/CMakeLists.txt", "qemu-x86_64"),
     "povray": ("scripts/cleave_scripts/motion/povray_scene.py", "povray"),
     "npm": ("scripts/cleave_scripts/viewer/page.py", "npm"),
 }
 
 
+def package_lines():
+    """Of every list: what all presets need, and what single ones need beside."""
+    files = sorted((SCRIPTS / "data").glob("packages*.txt"))
+    return [line for file in files for line in file.read_text().splitlines() if line and not line.startswith("#")]
+
+
 def packages():
-    lines = (SCRIPTS / "data" / "packages.txt").read_text().splitlines()
-    return dict(line.split(maxsplit=1) for line in lines if line and not line.startswith("#"))
+    return dict(line.split(maxsplit=1) for line in package_lines())
 
 
 def step_record_columns():
@@ -59,10 +69,7 @@ def step_record_columns():
 class PackagesTest(unittest.TestCase):
 
     def test_every_package_is_named_once_with_a_reason(self):
-        lines = [
-            line for line in (SCRIPTS / "data" / "packages.txt").read_text().splitlines() if not line.startswith("#")
-        ]
-        self.assertEqual(len(lines), len(packages()))
+        self.assertEqual(len(package_lines()), len(packages()))
         self.assertTrue(all(len(reason.split()) > 1 for reason in packages().values()))
 
     def test_every_package_is_used(self):
@@ -74,6 +81,11 @@ class PackagesTest(unittest.TestCase):
             text = (ROOT / place).read_text()
             self.assertTrue(any(re.search(rf"\b{name}\b", text) for name in names),
                             f"{package}: {place} has no {names}")
+
+    def test_only_presets_that_exist_have_packages_of_their_own(self):
+        presets = {preset["name"] for preset in json.loads((ROOT / "CMakePresets.json").read_text())["buildPresets"]}
+        lists = {file.stem.removeprefix("packages_") for file in (SCRIPTS / "data").glob("packages_*.txt")}
+        self.assertLessEqual(lists, presets)
 
     def test_everything_cmake_looks_for_has_a_package(self):
         text = "".join((ROOT / name).read_text() for name in ("CMakeLists.txt", "tests/CMakeLists.txt"))

@@ -43,11 +43,21 @@ class ReferenceSetTest(unittest.TestCase):
         described = set(provenance())
         for path in RESULTS.rglob("*"):
             name = str(path.relative_to(RESULTS))
+            if name.startswith("torture/"):
+                continue
             if path.is_file() and path.suffix != ".md" and name != "provenance.json" and path.name != "manifest.json":
                 beside = path.name in ("steps.csv", "checksums") and (path.parent / "manifest.json").exists()
                 self.assertTrue(beside or name in described, f"results/{name}: neither a manifest nor provenance")
         for name in described:
             self.assertTrue((RESULTS / name).exists(), f"results/provenance.json names {name}, which is not there")
+
+    def test_the_hostile_trials_say_themselves_what_made_them_and_judged_no_row_wrong(self):
+        told = json.loads((RESULTS / "torture" / "torture.json").read_text())
+        self.assertIn("--out results/torture", told["command"])
+        self.assertIn("clean", told["program"])
+        self.assertTrue(told["machine"])
+        self.assertEqual((told["state"], told["not_run"], told["total"]["above"]), ("complete", {}, 0))
+        self.assertEqual({path.name for path in (RESULTS / "torture").iterdir()}, {"torture.json", "torture.md"})
 
     def test_every_run_is_complete_and_knows_no_path_of_the_machine(self):
         for path in manifests():

@@ -58,6 +58,8 @@ class ReferenceTest(unittest.TestCase):
         (self.root / "results" / "old").mkdir(parents=True)
         (self.root / "results" / "old" / "steps.csv").write_text("old")
         (self.root / "results" / "README.md").write_text("kept")
+        (self.root / "results" / "torture").mkdir()
+        (self.root / "results" / "torture" / "torture.json").write_text("made apart, kept")
         self.git("init", "-q")
         self.commit()
 
@@ -93,7 +95,8 @@ class ReferenceTest(unittest.TestCase):
         self.assertEqual([call.split()[0] for call in calls], [stage.command[0] for stage in STAGES] + ["readme_tables"])
         self.assertIn("[1/15] matrix, about 20 min: scripts/reproduce --measure-every 10 --out out/reference/report", said)
         self.assertEqual(self.results(), {
-            "README.md", "provenance.json", "extremes.csv", "solver_benchmark.json", "partition_benchmark.json",
+            "README.md", "torture/torture.json", "provenance.json", "extremes.csv", "solver_benchmark.json",
+            "partition_benchmark.json",
             "dense_benchmark.json", "busy_machine.csv",
             "two_threads.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
             "report/verdicts.csv", *(f"report/scaling/bodies_50/{file}" for file in
@@ -108,7 +111,7 @@ class ReferenceTest(unittest.TestCase):
         self.assertEqual(manifest["argv"], ["out/reference/report/rock_pile/manifest.json"])
         notes = json.loads((self.root / "results/provenance.json").read_text())["files"]
         self.assertEqual(set(notes) - {"figures"}, {name for name in self.results() if not name.endswith(
-            ("README.md", "manifest.json", "steps.csv", "checksums", "provenance.json"))})
+            ("README.md", "torture.json", "manifest.json", "steps.csv", "checksums", "provenance.json"))})
         summed = subprocess.run(["sha256sum", "--strict", "-c", "checksums"],
                                 cwd=self.root / "results/full/rock_pile",
                                 capture_output=True,

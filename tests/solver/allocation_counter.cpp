@@ -13,6 +13,12 @@ namespace {
 std::atomic<bool> counting{false};
 std::atomic<long> allocations{0};
 
+}  // namespace
+
+// The thread sanitiser brings an operator new that cannot be replaced; nothing is counted there.
+#ifndef CLEAVE_THREAD_SANITISER
+namespace {
+
 void* allocate(std::size_t size, std::size_t alignment) noexcept {
   if (counting.load(std::memory_order_relaxed)) allocations.fetch_add(1, std::memory_order_relaxed);
   // Not aligned_alloc: it asks for a multiple of the alignment, and in the excess no sanitiser sees an overrun.
@@ -59,6 +65,7 @@ void operator delete(void* memory, const std::nothrow_t&) noexcept { std::free(m
 void operator delete[](void* memory, const std::nothrow_t&) noexcept { std::free(memory); }
 void operator delete(void* memory, std::align_val_t, const std::nothrow_t&) noexcept { std::free(memory); }
 void operator delete[](void* memory, std::align_val_t, const std::nothrow_t&) noexcept { std::free(memory); }
+#endif
 
 namespace cleave {
 

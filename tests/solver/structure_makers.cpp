@@ -8,7 +8,6 @@ namespace cleave {
 namespace {
 
 constexpr double kGravity_m_per_s2 = 9.81;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Vec3 subtract(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 Vec3 cross(const Vec3& a, const Vec3& b) {

@@ -6,6 +6,8 @@ from cleave_scripts.measurements.reference_stages import RUN_FILES, STAGES
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.whole_file import write_bytes, write_text
 
+APART = "torture"  # what scripts/torture leaves, which says itself what made it
+
 
 def _sources(stage, directory):
     """(file, where to below results/)"""
@@ -41,6 +43,8 @@ def publish(root, records):
         if (stage.runs or stage.files) and not files:
             raise ResultError(f"stage {stage.name} left nothing in {out / stage.place}")
     for path in sorted(results.rglob("*"), reverse=True):
+        if APART in path.relative_to(results).parts:
+            continue
         if path.is_dir():
             if not any(path.iterdir()):
                 path.rmdir()

@@ -1,0 +1,40 @@
+"""Files that may be damaged are opened in a process of their own: a library that crashes takes only that with it."""
+import multiprocessing
+import signal
+
+FORK = multiprocessing.get_context("fork")
+SECONDS = 60
+
+
+class Unreadable(Exception):
+    """The text says why."""
+
+
+def guarded(function, *arguments, seconds=SECONDS):
+    """What the function returns; Unreadable where it raises, crashes or takes too long."""
+    ours, theirs = FORK.Pipe(duplex=False)
+    worker = FORK.Process(target=_answer, args=(theirs, function, arguments), daemon=True)
+    worker.start()
+    theirs.close()
+    try:
+        if not ours.poll(seconds):
+            raise Unreadable("takes too long to read")
+        worked, value = ours.recv()
+    except EOFError:
+        raise Unreadable("crashes the reader") from None
+    finally:
+        worker.kill()
+        worker.join()
+        ours.close()
+    if not worked:
+        raise Unreadable(value)
+    return value
+
+
+def _answer(pipe, function, arguments):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal, which sends it to all
+    try:
+        answer = True, function(*arguments)
+    except Exception as error:  # whatever a library makes of a damaged file
+        answer = False, f"{type(error).__name__}: {error}".splitlines()[0]
+    pipe.send(answer)

@@ -1,0 +1,165 @@
+"""The judge of the hostile trials against closed forms, and what damages files and cells: it always damages."""
+import math
+import pathlib
+import random
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+from synthetic import ROOT
+
+from cleave_scripts.torture import endings
+from cleave_scripts.torture.cell_edits import changed_cell
+from cleave_scripts.torture.changes_of_values import ANY
+from cleave_scripts.torture.child import Ending
+from cleave_scripts.torture.foreign_file import write_foreign
+from cleave_scripts.torture.guarded import Unreadable, guarded
+from cleave_scripts.torture.judge import Problem, judge, judge_file
+from cleave_scripts.torture.meaning import meaning
+from cleave_scripts.torture.problem_files import ARRAY_CHANGES, FILE_CHANGES
+
+MASS, FALL, COMPLIANCE, MU = 2.0, -0.1635, 1e-6, 0.5
+LOAD = -FALL / (1 / MASS + COMPLIANCE)  # impulse that carries the ball
+
+
+def ball(side=0.0):
+    """A ball on the ground: a normal row and a friction row along x, as datasets of a problem file."""
+    inertia = np.diag([MASS] * 3 + [0.2] * 3)
+    return {"mass": inertia[None], "free_velocity": np.array([[side, 0, FALL, 0, 0, 0]]),
+            "row_body": np.array([[0, -1]] * 2), "jacobian": np.array([[0, 0, 1.0] + [0] * 9, [1.0] + [0] * 11]),
+            "rhs": np.zeros(2), "compliance": np.full(2, COMPLIANCE),
+            "lower": np.array([0, -MU * LOAD]), "upper": np.array([np.inf, MU * LOAD])}
+
+
+class JudgeTest(unittest.TestCase):
+
+    def verdict(self, impulse, side=0.0, **changes):
+        problem = Problem(ball(side) | changes)
+        velocity = problem.velocity(np.asarray(impulse, np.longdouble)) if np.isfinite(impulse).all() else None
+        return judge(problem, impulse, velocity)
+
+    def test_closed_forms_are_exact(self):
+        for side, friction in ((0, 0), (0.01, -0.01 / (1 / MASS + COMPLIANCE)), (5, -MU * LOAD), (-5, MU * LOAD)):
+            verdict = self.verdict([LOAD, friction], side)
+            self.assertLess(verdict.residual, 1e-15)
+            self.assertFalse(verdict.above())
+            self.assertEqual(verdict.limit, 1e-9 * max(1, abs(side)))
+
+    def test_a_residual_is_told_in_metres_per_second(self):
+        verdict = self.verdict([1.01 * LOAD, 0])
+        self.assertAlmostEqual(verdict.residual, 0.01 * LOAD * (1 / MASS + COMPLIANCE), 12)
+        self.assertTrue(verdict.above())
+        self.assertTrue(verdict.differs_from(0.9 * verdict.residual))
+        self.assertFalse(verdict.differs_from(verdict.residual))
+
+    def test_a_billionth_too_much_is_above(self):
+        self.assertFalse(self.verdict([LOAD + 1e-9, 0]).above())
+        self.assertTrue(self.verdict([LOAD + 3e-9, 0]).above())
+
+    def test_bounds_hold(self):
+        for impulse in ([-LOAD, 0], [LOAD, -2 * MU * LOAD], [0, 0]):
+            self.assertTrue(self.verdict(impulse, 5).above(), impulse)
+
+    def test_impulses_that_are_no_numbers_are_above(self):
+        for number in (math.nan, math.inf):
+            self.assertTrue(self.verdict([LOAD, number]).above())
+
+    def test_two_bodies_and_a_row_without_effect(self):
+        arrays = {name: np.concatenate([ball()[name]] * 2) for name in ("mass", "free_velocity")}
+        upper = np.array([[0, 0, 1.0, 0, 0, 0, 0, 0, -1.0, 0, 0, 0], [0.0] * 12])
+        arrays |= {"row_body": np.array([[0, 1], [0, 1]]), "jacobian": upper}
+        verdict = self.verdict([0, 0], **arrays)
+        self.assertEqual((verdict.residual, verdict.velocity_error), (0, 0))
+        self.assertAlmostEqual(self.verdict([1.0, 0], **arrays).residual, 2 / MASS + COMPLIANCE, 12)
+
+
+class DamageTest(unittest.TestCase):
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.directory = pathlib.Path(scratch.name)
+        self.path, self.changed = self.directory / "balls.h5", self.directory / "changed.h5"
+        page = (ROOT / "harness" / "files" / "PROBLEM_FILES.md").read_text(encoding="utf-8")
+        writer = re.search(r"```python\n(.*?)```", page, re.S).group(1)
+        subprocess.run([sys.executable, "-c", writer, self.path], check=True)
+        with h5py.File(self.path, "r+") as file:
+            file.attrs.update(scene="balls", step=1, seed=1, friction_model="box", erp=0.2, cfm=1e-6)
+            file["row_kind"] = np.where(file["friction_row"][:] < 0, 1, 2).astype("u1")
+            file["row_constraint"] = np.repeat([0, 1], 3).astype("i4")
+            file["contact_point"], file["warm_impulse"] = np.ones((6, 3)), np.ones(6)
+            file["position"], file["orientation"] = np.ones((2, 3)), np.tile([1.0, 0, 0, 0], (2, 1))
+
+    def test_every_change_can_be_made(self):
+        for name, expected, change in ARRAY_CHANGES:
+            for seed in range(20):
+                for path in self.directory.iterdir():
+                    path.unlink() if path != self.path else None
+                write_foreign(self.path, self.changed)
+                before = self.changed.read_bytes()
+                with self.subTest(name, seed=seed), h5py.File(self.changed, "r+") as file:
+                    change(file, random.Random(seed))
+                self.assertTrue(expected == ANY or self.changed.read_bytes() != before, name)
+
+    def test_every_file_can_be_spoilt(self):
+        for name, _, change in FILE_CHANGES:
+            with self.subTest(name):
+                write_foreign(self.path, self.changed)
+                change(self.changed, random.Random(1))
+                self.assertFalse(self.changed.is_file() and self.changed.read_bytes() == self.path.read_bytes())
+                self.changed.rmdir() if self.changed.is_dir() and not self.changed.is_symlink() else self.changed.unlink()
+
+    def test_the_meaning_is_that_of_the_defaults_and_no_other(self):
+        write_foreign(self.path, self.changed)
+        self.assertEqual(meaning(self.changed), meaning(self.path))
+        with h5py.File(self.changed, "r+") as file:
+            del file["row_kind"], file["row_constraint"]
+            file["something_else"] = 1.0
+        self.assertEqual(meaning(self.changed), meaning(self.path))
+        with h5py.File(self.changed, "r+") as file:
+            del file["warm_impulse"]
+        self.assertNotEqual(meaning(self.changed), meaning(self.path))
+
+    def test_what_cannot_be_read_is_no_end(self):
+        self.changed.write_bytes(b"\x89HDF")
+        with self.assertRaisesRegex(Unreadable, "OSError"):
+            guarded(judge_file, self.changed, self.changed)
+        with self.assertRaisesRegex(Unreadable, "crashes"):
+            guarded(lambda: __import__("os").abort())
+        with self.assertRaisesRegex(Unreadable, "too long"):
+            guarded(lambda: __import__("time").sleep(60), seconds=0)
+
+    def test_a_changed_cell_says_something_else(self):
+        for text in ("0", "1", "-1", "12", "0.5", "1e-300", "nan", "inf", "-", "ok", "mix", "a1b2", "-0.25"):
+            for seed in range(200):
+                cell = changed_cell(random.Random(seed), text, 1e-6)
+                self.assertNotEqual(cell, text)
+                if text[-1].isdigit() and "b" not in text and cell.replace(".", "").lstrip("-").isdigit():
+                    self.assertNotEqual(float(cell), float(text))
+
+
+class EndingsTest(unittest.TestCase):
+
+    def fault(self, code, err="", out="", hung=False):
+        return endings.fault(Ending((), code, out, err, 0.0, hung), (0, 1, 3))
+
+    def test_what_is_promised_is_no_fault(self):
+        for case in ((0, "told\nand told"), (1, "cleave: no"), (3, "a\nb", "FAIL"),
+                     (1, f"a.h5: problem of x step 1: 2 bodies, hash {'0' * 16}\ncleave verify: no", "ok")):
+            self.assertIsNone(self.fault(*case), case)
+
+    def test_what_is_not_promised_is_named(self):
+        for case, words in (((1, ""), "no error line"), ((1, "a\nb"), "several error lines"), ((2, "a"), "exit code 2"),
+                            ((1, "a\x1bb"), "control characters"), ((-11, ""), "crashes with SIGSEGV"),
+                            ((0, "Traceback (most recent call last):"), "Traceback"),
+                            ((-9, "", "", True), "hangs")):
+            self.assertIn(words, self.fault(*case), case)
+
+
+if __name__ == "__main__":
+    unittest.main()
