@@ -10,6 +10,7 @@
 
 #include "harness/base/hash.h"
 #include "scenarios/file_body_reader.h"
+#include "scenarios/file_characters.h"
 #include "scenarios/file_joint_reader.h"
 #include "scenarios/file_values.h"
 
@@ -19,10 +20,13 @@ namespace {
 const Range kLayer_m{0, 1e-2};
 
 toml::table parsed_toml(const std::string& text, const std::string& name) {
+  check_characters(text, name);
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
     reject_at(name, error.source(), "not TOML", std::string(error.description()));
+  } catch (const TomlAssertion&) {
+    throw std::invalid_argument(name + ": not TOML: the parser gives up on it");
   }
 }
 

@@ -19,6 +19,8 @@ std::string described(const toml::node& node) {
 
 }  // namespace
 
+void throw_toml_assertion() { throw TomlAssertion(); }
+
 void reject_at(const std::string& file, const toml::source_region& source, const std::string& key,
                const std::string& text) {
   throw std::invalid_argument(file + ":" + std::to_string(source.begin.line) + ": " + key + ": " + text);
@@ -32,7 +34,10 @@ void Value::reject_value(const std::string& allowed) const {
 
 double Value::number(const Range& range) const {
   if (!node_->is_number()) reject_value("a number in " + range.text());
-  const double value = *node_->value<double>();
+  // The node's own conversion gives nothing for whole numbers beyond 2^53.
+  const auto* integer = node_->as_integer();
+  const double value =
+      integer != nullptr ? static_cast<double>(integer->get()) : node_->as_floating_point()->get();
   if (!range.contains(value)) reject_value("in " + range.text());
   return value;
 }

@@ -2,7 +2,6 @@
 // key, value and what is allowed.
 #pragma once
 
-#include <toml++/toml.h>
 #include <map>
 #include <optional>
 #include <set>
@@ -10,6 +9,14 @@
 #include <vector>
 
 #include "harness/base/numbers.h"
+
+// Some damaged files break the library's assertions, which are errors of the file like any other.
+namespace cleave::scene_file {
+struct TomlAssertion {};
+[[noreturn]] void throw_toml_assertion();
+}  // namespace cleave::scene_file
+#define TOML_ASSERT(condition) ((condition) ? void() : cleave::scene_file::throw_toml_assertion())
+#include <toml++/toml.h>
 
 namespace cleave::scene_file {
 

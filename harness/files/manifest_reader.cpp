@@ -28,6 +28,8 @@ json parse(const std::filesystem::path& path) {
     return json::parse(file);
   } catch (const json::parse_error& error) {
     reject(path, "is not JSON from byte " + std::to_string(error.byte) + " on; is it damaged?");
+  } catch (const json::out_of_range&) {
+    reject(path, "holds a number beyond the range of 64-bit floats; is it damaged?");
   }
 }
 

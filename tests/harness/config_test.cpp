@@ -237,6 +237,8 @@ TEST_F(Config, AManifestThatCannotBeRepeatedIsOneLine) {
   expect_error(run, "option mu: allowed are text, number");
   replace_in_base("\"mu\": [1]", "\"mu\": ");
   expect_error(run, "is not JSON from byte ");
+  std::ofstream(manifest("base")) << R"({"schema": 1e400})";
+  expect_error(run, "base/manifest.json: holds a number beyond the range of 64-bit floats");
   std::ofstream(manifest("base")) << "[1, 2]";
   expect_error(run, "holds no JSON object");
   std::ofstream(manifest("base")) << R"({"schema": "cleave-run-9", "command": "run", "options": {}})";

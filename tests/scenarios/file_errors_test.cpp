@@ -102,6 +102,8 @@ TEST(FileErrors, NumbersAndRanges) {
       {body("[1, 1, 1]", "[1,\n  1,\n  -1]"), "s.toml:6: body[0].edges_m[2]: -1 is not in [1e-06, 1e+06]"},
       {body("[0, 0, 2]", "[0, 'x', 2]"),
        "s.toml:6: body[0].position_m[1]: 'x' is not a number in [-1e+06, 1e+06]"},
+      {body("2]", "9223372036854775807]"),
+       "s.toml:6: body[0].position_m[2]: 9223372036854775807 is not in [-1e+06, 1e+06]"},
       {"contact_layer_m = 1\n" + body(), "s.toml:1: contact_layer_m: 1 is not in [0, 0.01]"},
       {"[ground]\nheight_m = {}\n" + body(),
        "s.toml:2: ground.height_m: a table is not a number in [-1e+06, 1e+06]"},
@@ -109,6 +111,21 @@ TEST(FileErrors, NumbersAndRanges) {
        "s.toml:2: plane[0].normal: has no length; a direction is a list of three numbers, at least one of "
        "them "
        "not 0"},
+  });
+}
+
+// Found by a fuzzer: an assertion of the library ended the program, and some characters have no defined answer there.
+TEST(FileErrors, WhatTheParserDoesNotExpect) {
+  const std::string rule = ": not TOML: a character beyond ASCII that is in no comment and no string";
+  expect_errors({
+      {"a = [1,}", "s.toml: not TOML: the parser gives up on it"},
+      {"[ground]\n\u0450", "s.toml:2" + rule},
+      {"'a' \uFCFF", "s.toml:1" + rule},
+      {"\"\"\"a\n\"\"\"\"\u00E4", "s.toml:2" + rule},
+      {"\"\\\"\" = \u00E4", "s.toml:1" + rule},
+      {"\uFEFF# \u0450 \uFCFF\n" + body(), ""},
+      {body("'rock'", "\"\u00E4\""),
+       "s.toml:2: body[0].group: '\u00E4' is not a name of letters, digits, '-' and '_' other than 'world'"},
   });
 }
 

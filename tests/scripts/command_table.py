@@ -36,6 +36,7 @@ BAD = {
     "condition": ("", "solver", "=schur"),
     "figures": ("", "figure1,", "figure9"),
     "colour": ("", "parts"),
+    "fuzz targets": ("", "csv,", "scen"),
     "preset": ("", "relase"),
     "target": ("",),
     "trials": ("", "edits,", "edit"),
@@ -47,7 +48,7 @@ BAD = {
 NEAR = {
     "rock_pill": "rock_pile", "no_contract": "no_contact", "exakt": "exact", "reech": "reach", "shur": "schur",
     "markdow": "markdown", "figure9": "figure", "parts": "part",
-    "edit": "edits"
+    "edit": "edits", "scen": "scene"
 }
 
 MEASURED = {"--out": "output directory"}
@@ -65,6 +66,7 @@ COMMANDS = {
     "cold_starts": Command({"--seeds": "seeds", **MEASURED}, runs=True),
     "extremes": Command({"--cfm": "compliances", "--seeds": "seeds", **SERIES}, runs=True),
     "extremes_table": Command({"--csv": "output file"}, ("{extremes}",), ("{extremes}",), ("{extremes}",)),
+    "fuzz": Command({"--minutes": "count", "--target": "fuzz targets", "--minimise": "", "--page": "output file", **MEASURED}),
     "idle_cost": Command({"--rounds": "count", **MEASURED}, runs=True),
     "ladder": Command({"--full": "", "--rung": "rungs", "--solver": "climbers", "--steps": "count", "--timeout": "seconds",
                        "--jobs": "count", **MEASURED}, runs=True),

@@ -1,0 +1,124 @@
+"""Runs of the fuzz targets (tests/fuzz): programs of libFuzzer, their corpora, findings and counts."""
+import dataclasses
+import datetime
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import time
+
+from cleave_scripts.results.command import say
+from cleave_scripts.results.command_line import counted
+from cleave_scripts.results.errors import AlreadyTold, ResultError
+from cleave_scripts.results.programs import ROOT, run_and_watch
+
+TARGETS = ("csv", "manifest", "options", "scene", "problem")
+SOURCES = ROOT / "tests" / "fuzz"
+LONGEST_BYTES = 4096  # of an input
+TIMEOUT_S = 120  # of one input; far more than any takes, also on a busy machine
+
+
+@dataclasses.dataclass
+class Result:
+    target: str
+    minutes: float
+    executions: int
+    edges: int  # of the program's branches that were reached
+    edges_in_all: int
+    inputs: int  # each of which reaches something that the others do not
+    findings: list
+
+
+def find_programs(about):
+    """The folder of the programs: CLEAVE_FUZZ_PROGRAMS, or where they are built now. about: what is said of the work."""
+    given = os.environ.get("CLEAVE_FUZZ_PROGRAMS")
+    folder = pathlib.Path(given).resolve() if given else ROOT / "build" / "fuzz" / "tests" / "fuzz"
+    if given and not all(os.access(folder / f"fuzz_{name}", os.X_OK) for name in TARGETS):
+        raise ResultError(f"CLEAVE_FUZZ_PROGRAMS is '{given}', which does not hold fuzz_{', fuzz_'.join(TARGETS)}")
+    say(about + ("" if given else ", up to 6 more where nothing is built"))
+    setup = [ROOT / "scripts" / "setup", "--preset", "fuzz", "--target", "fuzz_all"]
+    if not given and subprocess.run(setup, check=False).returncode != 0:
+        raise AlreadyTold
+    return folder
+
+
+def command(programs, name, *arguments):
+    words = [programs / f"fuzz_{name}", f"-max_len={LONGEST_BYTES}", f"-timeout={TIMEOUT_S}", "-rss_limit_mb=4096",
+             "-detect_leaks=0"]  # libraries keep what they have read
+    dictionary = SOURCES / "dictionaries" / f"{name}.dict"
+    return [*words, *([f"-dict={dictionary}"] if dictionary.exists() else []), *arguments]
+
+
+def run(words, log):
+    """The exit code: not 0 where an input is a finding, or where the program fails by itself."""
+    in_memory = {"TMPDIR": "/dev/shm"} if os.access("/dev/shm", os.W_OK) else {}
+    with open(log, "w", encoding="utf-8") as file:
+        return run_and_watch(words, stdout=file, stderr=subprocess.STDOUT, env={**os.environ, **in_memory})
+
+
+def fuzz(programs, name, out, seconds):
+    """Fuzzes one target until the time is over, again after each finding; a known one again ends it."""
+    corpus, folder, log = out / "corpus" / name, out / "findings" / name, out / f"{name}.log"
+    for place in (corpus, folder):
+        place.mkdir(parents=True, exist_ok=True)
+    findings, begin, executions, text = set(), time.monotonic(), 0, ""
+    while (left := seconds - (time.monotonic() - begin)) >= 1:
+        code = run(command(programs, name, f"-max_total_time={int(left)}", f"-artifact_prefix={folder}/",
+                           "-print_final_stats=1", corpus, SOURCES / "corpus" / name), log)
+        text = log.read_text(encoding="utf-8", errors="replace")
+        executions += last_number(r"stat::number_of_executed_units: +(\d+)", text)
+        if code == 0:
+            break
+        found = re.findall(r"Test unit written to (.+)", text)
+        if not found:
+            raise ResultError(f"fuzz_{name} stopped with exit code {code}; see {log}")
+        if found[-1] in findings:
+            break
+        findings.add(found[-1])
+    return Result(name, (time.monotonic() - begin) / 60, executions, last_number(r"cov: (\d+)", text),
+                  last_number(r"\((\d+) inline 8-bit counters\)", text), last_number(r"corp: (\d+)", text),
+                  sorted(findings))
+
+
+def last_number(pattern, text):
+    found = re.findall(pattern, text)
+    return int(found[-1]) if found else 0
+
+
+def minimise(programs, name, out):
+    """Inputs that were findings (finding-...) are kept whatever they reach."""
+    corpus = SOURCES / "corpus" / name
+    with tempfile.TemporaryDirectory() as scratch:
+        smallest = pathlib.Path(scratch) / name
+        smallest.mkdir()
+        code = run(command(programs, name, "-set_cover_merge=1", smallest, corpus, out / "corpus" / name), out / f"{name}.log")
+        if code != 0:
+            raise ResultError(f"fuzz_{name} stopped with exit code {code}; see {out / name}.log")
+        for file in corpus.iterdir():
+            if not file.name.startswith("finding-"):
+                file.unlink()
+        for file in smallest.iterdir():
+            shutil.copy(file, corpus / file.name)
+
+
+def commit():
+    def git(*arguments):
+        return subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, text=True, check=True).stdout.strip()
+    return git("rev-parse", "--short=10", "HEAD") + (" with local changes" if git("status", "--porcelain") else "")
+
+
+def page(results):
+    """The results as a page."""
+    found = sum(len(result.findings) for result in results)
+    lines = ["# The last run of the fuzzers", "",
+             f"`scripts/fuzz`, {datetime.date.today()}, commit {commit()}: {counted(found, 'finding')}.", "",
+             "| target | minutes | executions | branches reached | of the program's | inputs kept | findings |",
+             "| --- | --- | --- | --- | --- | --- | --- |"]
+    for result in results:
+        lines.append(f"| {result.target} | {result.minutes:.0f} | {result.executions} | {result.edges} | {result.edges_in_all} | "
+                     f"{result.inputs} | {len(result.findings)} |")
+    lines += ["", "The program of a target holds code that it cannot reach: every solver, for instance. What each target reads and what",
+              "counts as a finding: [tests/fuzz/README.md](../../tests/fuzz/README.md).", ""]
+    return "\n".join(lines)

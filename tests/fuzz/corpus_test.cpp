@@ -1,0 +1,62 @@
+// What fuzzers found, and what takes them to every place they know, through the same functions: no fuzzer is needed.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "tests/fuzz/target.h"
+
+namespace cleave::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kCorpus = fs::path(CLEAVE_SOURCE_DIR) / "tests/fuzz/corpus";
+constexpr std::uintmax_t kMostBytes = 500'000;  // of all corpora
+
+std::string bytes_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class Corpus : public testing::TestWithParam<Target> {};
+
+TEST_P(Corpus, NothingInItIsAFinding) {
+  int inputs = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(kCorpus / GetParam().name)) {
+    SCOPED_TRACE(entry.path().string());
+    EXPECT_NO_THROW(GetParam().run(bytes_of(entry.path())));
+    ++inputs;
+  }
+  EXPECT_GE(inputs, 10);
+}
+
+// A change is of the target's own making: it is one that the target can be given.
+TEST_P(Corpus, ItsChangesAreNoFindings) {
+  if (GetParam().mutate == nullptr) return;
+  Random random(1);
+  std::string bytes;
+  for (int i = 0; i < 200; ++i) {
+    bytes = GetParam().mutate(i % 20 == 0 ? "" : bytes, random);
+    SCOPED_TRACE(bytes);
+    EXPECT_NO_THROW(GetParam().run(bytes));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Fuzz, Corpus, testing::ValuesIn(targets().begin(), targets().end()),
+                         [](const auto& info) { return info.param.name; });
+
+TEST(CorpusFolder, HoldsTargetsOnlyAndIsSmall) {
+  std::uintmax_t bytes = 0;
+  std::size_t folders = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(kCorpus)) {
+    if (entry.is_regular_file()) bytes += entry.file_size();
+    folders += entry.is_directory();
+  }
+  EXPECT_EQ(folders, targets().size());
+  EXPECT_LT(bytes, kMostBytes);
+}
+
+}  // namespace
+}  // namespace cleave::fuzz

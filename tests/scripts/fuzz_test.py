@@ -1,0 +1,87 @@
+"""scripts/fuzz with stand-ins for the programs of libFuzzer."""
+import os
+import pathlib
+import re
+import subprocess
+import tempfile
+import unittest
+
+from synthetic import ROOT, SCRIPTS
+
+from cleave_scripts.measurements import fuzzing
+
+# Prints what libFuzzer prints, and what FAKE says: a finding, a failure of its own, or nothing.
+PROGRAM = """#!/usr/bin/python3
+import os, pathlib, sys
+folder = pathlib.Path([word for word in sys.argv if word.startswith("-artifact_prefix=")][0].split("=")[1])
+print("INFO: Loaded 1 modules   (5000 inline 8-bit counters): 5000")
+print("#100 DONE   cov: 321 ft: 400 corp: 12/345b lim: 4096 exec/s: 10 rss: 40Mb")
+name, fake = pathlib.Path(sys.argv[0]).name, os.environ.get("FAKE", "")
+if fake == "finding " + name:
+    (folder / "crash-1").write_text("x")
+    print(f"artifact_prefix='{folder}/'; Test unit written to {folder}/crash-1")
+print("stat::number_of_executed_units: 1234")
+sys.exit({"": 0, "finding " + name: 77, "failure " + name: 1}.get(fake, 0))
+"""
+
+
+class FuzzTest(unittest.TestCase):
+
+    def setUp(self):
+        scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(scratch.cleanup)
+        self.directory = pathlib.Path(scratch.name)
+        self.out = self.directory / "out"
+        for name in fuzzing.TARGETS:
+            program = self.directory / f"fuzz_{name}"
+            program.write_text(PROGRAM)
+            program.chmod(0o755)
+
+    def fuzz(self, *arguments, fake="", programs=None):
+        environment = {**os.environ, "CLEAVE_FUZZ_PROGRAMS": str(programs or self.directory), "FAKE": fake}
+        return subprocess.run([SCRIPTS / "fuzz", "--out", self.out, *arguments], capture_output=True, text=True,
+                              timeout=60, check=False, env=environment)
+
+    def test_every_target_is_counted_on_the_page(self):
+        page = self.directory / "page.md"
+        result = self.fuzz("--page", page)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(result.stdout, page.read_text())
+        self.assertEqual(result.stdout, (self.out / "README.md").read_text())
+        self.assertIn(": 0 findings.", result.stdout)
+        for name in fuzzing.TARGETS:
+            self.assertIn(f"| {name} | 0 | 1234 | 321 | 5000 | 12 | 0 |", result.stdout)
+
+    def test_a_finding_is_kept_and_told(self):
+        result = self.fuzz("--target", "csv,scene", fake="finding fuzz_scene")
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("1 finding.", result.stdout)
+        self.assertIn("| csv | 0 | 1234 | 321 | 5000 | 12 | 0 |", result.stdout)
+        self.assertIn("| scene | 0 | 2468 | 321 | 5000 | 12 | 1 |", result.stdout)  # the same again ended it
+        self.assertNotIn("| options |", result.stdout)
+        self.assertEqual([file.name for file in (self.out / "findings" / "scene").iterdir()], ["crash-1"])
+
+    def test_a_program_that_fails_by_itself_is_no_finding(self):
+        result = self.fuzz(fake="failure fuzz_manifest")
+        self.assertEqual((result.returncode, result.stdout), (1, ""))
+        self.assertIn("fuzz_manifest stopped with exit code 1", result.stderr.splitlines()[-1])
+
+    def test_bad_input(self):
+        for arguments in (["--target", "nothing"], ["--minutes", "0"], ["--nope"]):
+            result = self.fuzz(*arguments)
+            self.assertEqual((result.returncode, result.stdout), (1, ""), arguments)
+            self.assertFalse(self.out.exists())
+        self.assertIn("CLEAVE_FUZZ_PROGRAMS", self.fuzz(programs=self.directory / "none").stderr)
+
+    def test_the_script_and_the_sources_name_the_same_targets(self):
+        sources = ROOT / "tests" / "fuzz"
+        listed = (sources / "CMakeLists.txt").read_text().split("foreach(TARGET ")[1].split(")")[0].split()
+        rows = re.findall(r'\{"(\w+)", read_', (sources / "targets.cpp").read_text())
+        folders = sorted(folder.name for folder in (sources / "corpus").iterdir())
+        self.assertEqual(sorted(fuzzing.TARGETS), folders)
+        self.assertEqual(listed, list(fuzzing.TARGETS))
+        self.assertEqual(rows, list(fuzzing.TARGETS))
+
+
+if __name__ == "__main__":
+    unittest.main()
