@@ -75,7 +75,10 @@ template <class Member>
 OptionSpec flag(const Row& row, std::string help, Member member) {
   return spec(
       row, Kind::flag, "", std::move(help),
-      [=](RunOptions& o, const std::string& value) { member(o) = value == "true"; },
+      [=, option = std::string("--") + row.name](RunOptions& o, const std::string& value) {
+        check_name(option, value, std::vector<std::string>{"true", "false"});
+        member(o) = value == "true";
+      },
       [=](const RunOptions& o) { return std::string(member(o) ? "true" : "false"); });
 }
 

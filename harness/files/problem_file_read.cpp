@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <limits>
 #include <new>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -75,6 +76,16 @@ void check_friction(const Hdf5Reader& reader, const StepProblem& problem) {
       reader.fail(std::string("dataset ") + name + " is missing, which friction rows need");
 }
 
+// A file of ours holds nothing that is not read: the name of an array with a default may have been damaged.
+void check_names(const Hdf5Reader& reader, const StoredHashes& hashes) {
+  std::set<std::string> known = {"body_group", "shape", "solution", "partition"};
+  ProblemFile any;
+  visit_arrays(any, 0, 0, [&known](const char* name, auto&&...) { known.insert(name); });
+  for (const std::string& name : reader.names())
+    if (hashes.written_by == kWrittenByCleave && !known.contains(name))
+      reader.fail(name + " is no data of a problem file that cleave wrote: the file is damaged");
+}
+
 void read_problem(const Hdf5Reader& reader, std::size_t n, std::size_t m, ProblemFile& file) {
   visit_arrays(file, n, m, present_arrays_of(reader));
   fill_left_out(file);
@@ -137,6 +148,7 @@ std::string read_packed(const fs::path& path) {
   PackedProblemFile packed;
   try {
     read_hashes(reader, packed.hashes);
+    check_names(reader, packed.hashes);
     packed.file = read_contents(reader);
     return pack(packed);
   } catch (const std::bad_alloc&) {

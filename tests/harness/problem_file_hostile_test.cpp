@@ -59,6 +59,15 @@ class HostileProblemFile : public ::testing::Test {
   const fs::path path_ = directory_ / "a.h5";
 };
 
+TEST_F(HostileProblemFile, ANameThatIsNoneInAFileOfOurs) {
+  write_problem_file(path_, sample_file());
+  {
+    const Hdf5Handle file(H5Fopen(path_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+    ASSERT_GE(H5Lmove(file.id(), "row_constraint", file.id(), "row_constraiGt", H5P_DEFAULT, H5P_DEFAULT), 0);
+  }
+  expect(error_of(), "row_constraiGt is no data of a problem file that cleave wrote");
+}
+
 TEST_F(HostileProblemFile, LinksAreNotFollowed) {
   ASSERT_EQ(::mkfifo((directory_ / "fifo").c_str(), 0600), 0);
   expect(error_with("rhs",
