@@ -3,6 +3,7 @@
 // written out as 3x3 matrices here.
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <optional>
 
 #include "solver/kernels/kernel.h"
 #include "solver/linear/eigen_blocking.h"
@@ -36,8 +37,8 @@ class DenseKernel : public Kernel {
       add_blocks();
     }
     StageTimer timer(tasks.clock(), Stage::factor_local);
-    factor_.compute(h_);
-    return factor_.info() == Eigen::Success;
+    factor_->compute(h_);
+    return factor_->info() == Eigen::Success;
   }
 
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
@@ -48,7 +49,7 @@ class DenseKernel : public Kernel {
     Eigen::Map<Eigen::VectorXd> v(dv.data(), size(dv)), lambda(dlambda.data(), size(dlambda));
     Eigen::VectorXd weighted = d_.cwiseProduct(fr);
     turn(weighted, false);
-    v = factor_.solve(fv + jacobian_.transpose() * weighted);
+    v = factor_->solve(fv + jacobian_.transpose() * weighted);
     Eigen::VectorXd row_velocity = jacobian_ * v;
     turn(row_velocity, true);
     lambda = d_.cwiseProduct(fr - row_velocity);
@@ -65,7 +66,7 @@ class DenseKernel : public Kernel {
   void release() {
     mass_ = jacobian_ = h_ = Eigen::MatrixXd();
     d_ = scalar_d_ = Eigen::VectorXd();
-    factor_ = Eigen::LLT<Eigen::MatrixXd>();
+    factor_.emplace();
   }
 
   using Basis = Eigen::Map<const Eigen::MatrixXd>;
@@ -115,7 +116,8 @@ class DenseKernel : public Kernel {
   Eigen::MatrixXd mass_, jacobian_, h_;
   Eigen::VectorXd d_, scalar_d_;  // scalar_d: zero on the rows of blocks
   std::span<const WeightBlock> blocks_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
+  // Eigen's own move copies a status that is not set before the first factorisation.
+  std::optional<Eigen::LLT<Eigen::MatrixXd>> factor_{std::in_place};
 };
 
 }  // namespace
