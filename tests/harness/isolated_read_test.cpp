@@ -49,7 +49,7 @@ TEST(IsolatedRead, CrashIsALine) {
 
 TEST(IsolatedRead, EndlessLoopIsALine) {
   const auto loop = []() -> std::string {
-    volatile int turns = 0;
+    volatile unsigned turns = 0;
     for (;;) turns = turns + 1;
   };
   EXPECT_EQ(error_of(loop, {64 << 20, 1}),
