@@ -161,7 +161,7 @@ ReadLimits limits_for(const fs::path& path) {
   std::error_code error;
   const std::uintmax_t size = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
   constexpr std::size_t kMegabyte = 1 << 20;
-  return {256 * kMegabyte + 64 * size, static_cast<int>(60 + size / kMegabyte)};
+  return {256 * kMegabyte + 64 * size, static_cast<int>(5 + size / kMegabyte)};
 }
 
 // Checks what the child handed back, whatever that is.
