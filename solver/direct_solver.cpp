@@ -188,7 +188,7 @@ bool DirectSolver::attempt(SolveSummary& summary, double delta, std::span<const 
     StageTimer timer(clock_, Stage::predict);
     if (delta > 0) {
       proximal_.begin(step_, warm_impulse, delta);
-      step_.prepare(proximal_.problem());
+      step_.prepare(proximal_.problem(), &state_.tasks);
     }
     state_.begin(step_, *kernel_, summary, warm_impulse);
   }
@@ -206,7 +206,7 @@ bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& proble
     if (delta > 0 && stiffest >= delta) continue;
     if (attempts++ > 0) ++summary.fallbacks;
     if (attempt(summary, delta, warm_impulse)) return true;
-    if (delta > 0) step_.prepare(problem);
+    if (delta > 0) step_.prepare(problem, &state_.tasks);
     state_.update_velocity();
     attempt_best_.offer(state_);
   }
@@ -220,7 +220,7 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, const Parts& par
   clock_.start();
   {
     StageTimer timer(clock_, Stage::analyze);
-    step_.prepare(problem);
+    step_.prepare(problem, &state_.tasks);
   }
   analyze(problem, parts.part_of_body);
   state_.part_of_body = parts.part_of_body;

@@ -1,16 +1,29 @@
 #include "solver/step_solver.h"
 
+#include <algorithm>
 #include <cassert>
 
 #include "solver/impulse_set.h"
 
 namespace cleave {
 
-const char* to_string(SolveStatus status) {
-  constexpr std::array<const char*, 8> names = {"ok",       "not_converged", "timeout", "out_of_memory",
-                                                "diverged", "refused",       "crashed", "skipped"};
-  return names[static_cast<std::size_t>(status)];
+namespace {
+
+// In the order of the enumeration.
+constexpr std::array<const char*, 8> kStatusNames = {"ok",       "not_converged", "timeout", "out_of_memory",
+                                                     "diverged", "refused",       "crashed", "skipped"};
+
+}  // namespace
+
+const char* to_string(SolveStatus status) { return kStatusNames[static_cast<std::size_t>(status)]; }
+
+std::optional<SolveStatus> find_status(std::string_view name) {
+  const auto found = std::ranges::find(kStatusNames, name);
+  if (found == kStatusNames.end()) return std::nullopt;
+  return static_cast<SolveStatus>(found - kStatusNames.begin());
 }
+
+std::vector<std::string> status_names() { return {kStatusNames.begin(), kStatusNames.end()}; }
 
 bool has_result(SolveStatus status) {
   return status == SolveStatus::ok || status == SolveStatus::not_converged ||

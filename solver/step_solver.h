@@ -5,9 +5,11 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "solver/parts.h"
 #include "solver/solution.h"
@@ -19,6 +21,8 @@ namespace cleave {
 
 enum class SolveStatus { ok, not_converged, timeout, out_of_memory, diverged, refused, crashed, skipped };
 const char* to_string(SolveStatus status);
+std::optional<SolveStatus> find_status(std::string_view name);  // by what to_string says
+std::vector<std::string> status_names();
 
 // Whether a solve with this status left impulses that can be judged, and numbers about itself.
 bool has_result(SolveStatus status);
