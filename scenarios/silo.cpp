@@ -81,7 +81,8 @@ class Silo : public Scene {
     const double low_m = -layer.side * cell_m / 2;
     Pose pose;
     pose.position_m = {low_m + (column + 0.5) * cell_m + random.uniform(-play_x_m, play_x_m),
-                       low_m + (row + 0.5) * cell_m + random.uniform(-play_y_m, play_y_m), bottom_m + z_m / 2};
+                       low_m + (row + 0.5) * cell_m + random.uniform(-play_y_m, play_y_m),
+                       bottom_m + z_m / 2};
     pose.orientation = {std::cos(turn_rad / 2), 0, 0, std::sin(turn_rad / 2)};
     builder.add_box(pose, mass_kg, {x_m, y_m, z_m});
     layer.top(column, row) = bottom_m + z_m;

@@ -63,7 +63,9 @@ class BoxTree {
     const AxisAlignedBox& bounds = nodes_[node].bounds;
     const auto side = [&](int axis) { return bounds[2 * axis + 1] - bounds[2 * axis]; };
     const int longest = std::ranges::max({0, 1, 2}, {}, side);
-    const auto twice_middle = [&](int box) { return boxes_[box][2 * longest] + boxes_[box][2 * longest + 1]; };
+    const auto twice_middle = [&](int box) {
+      return boxes_[box][2 * longest] + boxes_[box][2 * longest + 1];
+    };
     const int middle = first + (last - first) / 2;
     std::ranges::nth_element(members_.begin() + first, members_.begin() + middle, members_.begin() + last, {},
                              twice_middle);

@@ -58,7 +58,8 @@ TEST(Silo, IsAboutAsHighAsItIsWide) {
     SceneWorld world(scene_named("silo"), {{"bodies", std::to_string(bodies)}});
     const Pit pit(world.content());
     const double height_m = pit.highest_m + kMeanEdge_m / 2;
-    std::printf("bodies %d height %g width %g contacts %d between %d\n", bodies, height_m, 2 * pit.half_width_m, world.collide().all, world.collide().between_bodies);
+    std::printf("bodies %d height %g width %g contacts %d between %d\n", bodies, height_m,
+                2 * pit.half_width_m, world.collide().all, world.collide().between_bodies);
     EXPECT_GT(height_m, (bodies < 1000 ? 0.7 : 0.9) * 2 * pit.half_width_m) << bodies;
     EXPECT_LT(height_m, (bodies < 1000 ? 1.4 : 1.1) * 2 * pit.half_width_m) << bodies;
     expect_inside_walls(world.content(), 0);
@@ -76,11 +77,13 @@ TEST(Silo, StaysAsItWasBuilt) {
   const double layers = Pit(content).layers();
   for (int step = 0; step < 120; ++step) {
     const SceneWorld::Contacts contacts = world.step(step, 50);
-    if (step % 20 == 0) std::printf("step %d contacts %d depth %g\n", step, contacts.between_bodies, contacts.largest_depth_m);
+    if (step % 20 == 0)
+      std::printf("step %d contacts %d depth %g\n", step, contacts.between_bodies, contacts.largest_depth_m);
   }
   double moved = 0;
   for (std::size_t i = 0; i < start.size(); ++i)
-    for (int k = 0; k < 3; ++k) moved = std::max(moved, std::abs(dBodyGetPosition(content.bodies[i])[k] - start[i][k]));
+    for (int k = 0; k < 3; ++k)
+      moved = std::max(moved, std::abs(dBodyGetPosition(content.bodies[i])[k] - start[i][k]));
   std::printf("moved %g layers %g -> %g\n", moved, layers, Pit(content).layers());
   expect_inside_walls(content, 0.01);
 }

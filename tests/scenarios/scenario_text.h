@@ -25,7 +25,8 @@ inline std::vector<std::string> extreme_values(const Parameter& parameter) {
   if (parameter.kind == Parameter::Kind::path) return {};
   if (parameter.kind == Parameter::Kind::word) return parameter.words;
   const auto text = [&](double end) {
-    return parameter.kind == Parameter::Kind::integer ? std::to_string(static_cast<long>(end)) : number_text(end);
+    return parameter.kind == Parameter::Kind::integer ? std::to_string(static_cast<long>(end))
+                                                      : number_text(end);
   };
   return {text(parameter.range.min), text(parameter.range.max)};
 }
