@@ -21,12 +21,15 @@ const Parameter& max_iterations() {
 }
 
 const Parameter& predictor_sweeps() {
-  static const Parameter parameter{.name = "predictor-sweeps",
-                                   .kind = Kind::integer,
-                                   .default_value = "40",
-                                   .range = {0, kInfinity},
-                                   .help = "Gauss-Seidel sweeps that the strategy pivot starts from",
-                                   .source = "solver/strategies/pivot.cpp"};
+  static const Parameter parameter{
+      .name = "predictor-sweeps",
+      .kind = Kind::integer,
+      .default_value = "80",
+      .range = {0, kInfinity},
+      .help =
+          "most Gauss-Seidel sweeps that the strategy pivot starts from; fewer where "
+          "the active set settles",
+      .source = "solver/strategies/pivot.cpp"};
   return parameter;
 }
 

@@ -75,8 +75,7 @@ class DirectSolver : public StepSolver {
 
  private:
   std::string refuse_set(const StepProblem& problem) override;
-  SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
-                        Solution& solution) override;
+  SolveSummary do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) override;
   void analyze(const StepProblem& problem, std::span<const int> part_of_body);
   bool attempt(SolveSummary& summary, double delta, std::span<const double> warm_impulse);
   bool run_attempts(SolveSummary& summary, const StepProblem& problem, std::span<const double> warm_impulse);
@@ -189,7 +188,7 @@ bool DirectSolver::attempt(SolveSummary& summary, double delta, std::span<const 
     StageTimer timer(clock_, Stage::predict);
     if (delta > 0) {
       proximal_.begin(step_, warm_impulse, delta);
-      step_.prepare(proximal_.problem());
+      step_.prepare(proximal_.problem(), &state_.tasks);
     }
     state_.begin(step_, *kernel_, summary, warm_impulse);
   }
@@ -207,7 +206,7 @@ bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& proble
     if (delta > 0 && stiffest >= delta) continue;
     if (attempts++ > 0) ++summary.fallbacks;
     if (attempt(summary, delta, warm_impulse)) return true;
-    if (delta > 0) step_.prepare(problem);
+    if (delta > 0) step_.prepare(problem, &state_.tasks);
     state_.update_velocity();
     attempt_best_.offer(state_);
   }
@@ -215,17 +214,16 @@ bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& proble
   return false;
 }
 
-SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const int> part_of_body,
-                                    Solution& solution) {
+SolveSummary DirectSolver::do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) {
   SolveSummary summary;
   summary.kernel = kernel_name_;
   clock_.start();
   {
     StageTimer timer(clock_, Stage::analyze);
-    step_.prepare(problem);
+    step_.prepare(problem, &state_.tasks);
   }
-  analyze(problem, part_of_body);
-  state_.part_of_body = part_of_body;
+  analyze(problem, parts.part_of_body);
+  state_.part_of_body = parts.part_of_body;
   step_.set().to_axes(solution.impulse);
   const bool solved = run_attempts(summary, problem, solution.impulse);
   step_.set().project(state_.impulse);

@@ -38,7 +38,6 @@ struct Part {
   std::vector<double> velocity;    // L^-1 g, later dv, by position
   std::vector<double> coupling;    // -Y^T L^-1 g (ld), later -lambda_c
   std::vector<double> by_body;
-  std::vector<double> scratch;
   int ld = 0;
   bool factored = false;
 };
@@ -217,8 +216,8 @@ bool SchurRowsKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
     StageTimer timer(tasks.clock(), Stage::assemble);
     rows_.set(step_->problem(), weights);
   }
-  tasks.run(Stage::assemble, count, [&](int i) { parts_[i].matrix.assemble(rows_, 0); });
-  tasks.run(Stage::factor_local, count, [&](int i) { parts_[i].factored = parts_[i].matrix.factor(0); });
+  tasks.run(Stage::assemble, count, [&](int i) { parts_[i].matrix.assemble(rows_); });
+  tasks.run(Stage::factor_local, count, [&](int i) { parts_[i].factored = parts_[i].matrix.factor(); });
   for (int i = 0; i < count; ++i) {
     if (!parts_[i].factored) return false;
   }
@@ -268,7 +267,7 @@ void SchurRowsKernel::reduce(int i, std::span<const double> f_v, std::span<const
     for (int c = 0; c < 6; ++c) b[c] += sum[6 + c];
   }
   part.matrix.cholesky().to_positions(part.by_body, part.velocity);
-  part.matrix.cholesky().forward(0, part.velocity.data(), nullptr, part.scratch);
+  part.matrix.cholesky().forward(part.velocity.data());
   part.coupling.assign(part.ld, 0.0);
   subtract_matrix_vector(part.ld, static_cast<int>(part.velocity.size()), part.y.data(), part.ld,
                          part.velocity.data(), part.coupling.data());
@@ -285,7 +284,7 @@ void SchurRowsKernel::expand(int i, std::span<const double> f_r, std::span<doubl
     part.coupling[k] = -lambda_[part.interface_row[k]];
   subtract_transpose_vector(part.ld, static_cast<int>(part.velocity.size()), part.y.data(), part.ld,
                             part.coupling.data(), part.velocity.data());
-  part.matrix.cholesky().backward(0, part.velocity.data(), part.scratch);
+  part.matrix.cholesky().backward(part.velocity.data());
   part.matrix.cholesky().to_nodes(part.velocity, part.by_body);
   for (std::size_t k = 0; k < rows.bodies.size(); ++k) {
     std::copy_n(part.by_body.data() + 6 * k, 6, dv.data() + 6 * rows.bodies[k]);

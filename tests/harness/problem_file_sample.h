@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -132,6 +133,16 @@ inline void write_unchecked(
   }
   instead(writer, "");  // whatever else there shall be
   writer.close();
+}
+
+// What reading the file says; empty where it is read.
+inline std::string error_of(const std::filesystem::path& path) {
+  try {
+    read_problem_file(path);
+    return "";
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
 }
 
 template <class Number>
