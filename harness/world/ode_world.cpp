@@ -62,6 +62,8 @@ struct GeomPair {
 AxisAlignedBox bounding_box(dGeomID geom) {
   AxisAlignedBox box;
   dGeomGetAABB(geom, box.data());
+  if (std::ranges::any_of(box, [](double x) { return std::isnan(x); }))
+    throw std::runtime_error("geom " + std::to_string(index_of(geom)) + " is not at a finite place");
   return box;
 }
 

@@ -12,7 +12,7 @@
 
 namespace cleave {
 
-// Least and greatest coordinate along x, y, z, as ODE orders them; either may be infinite.
+// Least and greatest coordinate along x, y, z, as ODE orders them; either may be infinite, neither NaN.
 using AxisAlignedBox = std::array<double, 6>;
 
 // Every pair of boxes that overlap or touch, once, the lower index first, in no particular order.
