@@ -147,10 +147,12 @@ class Replay {
   void solve(const std::string& path, const fs::path& out, CsvRecorder& recorder) {
     ProblemFile file = read_problem_file(path);
     std::vector<StepRecord> rows(combinations_.size(), columns_of(file, path, options_));
-    StepProblem problem = file.problem;
-    if (options_.cold) std::ranges::fill(problem.warm_impulse, 0.0);
-    const std::vector<Outcome> outcomes = measure_all(combinations_, problem, summary_.measured_steps, rows);
+    std::vector<double> recorded = file.problem.warm_impulse;
+    if (options_.cold) std::ranges::fill(file.problem.warm_impulse, 0.0);
+    const std::vector<Outcome> outcomes =
+        measure_all(combinations_, file.problem, summary_.measured_steps, rows);
     if (options_.write_solutions) {
+      file.problem.warm_impulse = std::move(recorded);  // a copy of the file is of the same problem
       for (std::size_t i = 0; i < rows.size(); ++i) store(combinations_[i], rows[i], outcomes[i], file);
       write_problem_file(out / fs::path(path).filename(), file);
     }

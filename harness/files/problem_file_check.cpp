@@ -1,5 +1,6 @@
 #include "harness/files/problem_file_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -27,8 +28,9 @@ class Requirements {
   template <class Value, class Predicate>
   void add_each(const std::string& name, const std::vector<Value>& values, Predicate allowed,
                 const std::string& rule) {
-    for (std::size_t i = 0; i < values.size() && error_.empty(); ++i)
-      add(allowed(values[i]), name + "[" + std::to_string(i) + "]", values[i], rule);
+    const auto wrong = std::ranges::find_if_not(values, allowed);
+    if (wrong == values.end()) return;
+    add(false, name + "[" + std::to_string(wrong - values.begin()) + "]", *wrong, rule);
   }
   void add_text(const std::string& name, const std::string& text) {
     add(is_printable_utf8(text), name, text, "printable UTF-8 text without control characters");

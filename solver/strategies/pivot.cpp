@@ -10,15 +10,14 @@
 #include <algorithm>
 #include <limits>
 
-#include "solver/colored_sweeps.h"
+#include "solver/slab_sweeps.h"
 #include "solver/strategies/strategy.h"
 
 namespace cleave {
 namespace {
 
 constexpr int kRestartSweeps = 15;
-constexpr int kBatch = 5;  // sweeps between two looks at the active set
-// Enough sweeps where a batch moves no more than this share of the rows to or from a bound.
+// Enough sweeps where five of them move no more than this share of the rows to or from a bound.
 constexpr double kSettledShare = 0.003;
 // An iteration makes progress when it leaves less than this share of the least number of violations so far.
 constexpr double kProgress = 0.75;
@@ -69,9 +68,10 @@ class Pivot : public Strategy {
     }
     state.update_velocity();
     state.states_from_impulses();
-    for (int done = 0; done < sweeps; done += kBatch) {
+    for (int done = 0; done < sweeps; done += SlabSweeps::kMostSweeps) {
       last_state_ = state.state;
-      predictor_.run(std::min(kBatch, sweeps - done), state.impulse, state.velocity, state.tasks);
+      predictor_.run(std::min(SlabSweeps::kMostSweeps, sweeps - done), state.impulse, state.velocity,
+                     state.tasks);
       state.states_from_impulses();
       int changed = 0;
       for (std::size_t r = 0; r < last_state_.size(); ++r) changed += last_state_[r] != state.state[r];
@@ -85,7 +85,7 @@ class Pivot : public Strategy {
     return state.residual() <= state.step->exact_limit_m_per_s();
   }
 
-  ColoredSweeps predictor_;
+  SlabSweeps predictor_;
   std::vector<RowState> last_state_;
 };
 

@@ -73,6 +73,7 @@ TEST(Smoke, EverySceneRunsSmallWithAllCombinations) {
       {"log_tower", {"--layers", "4", "--logs", "2"}},
       {"rock_pile", {"--bodies", "12"}},
       {"large_rock_pile", {"--bodies", "12"}},
+      {"silo", {"--bodies", "12"}},
   };
   for (const ShippedScene& scene : shipped_scenes()) {
     const auto sizes = small.find(scene.name);
