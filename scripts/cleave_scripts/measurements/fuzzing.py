@@ -104,16 +104,17 @@ def minimise(programs, name, out):
 
 
 def commit():
+    """What is checked out now."""
     def git(*arguments):
         return subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, text=True, check=True).stdout.strip()
     return git("rev-parse", "--short=10", "HEAD") + (" with local changes" if git("status", "--porcelain") else "")
 
 
-def page(results):
-    """The results as a page."""
+def page(results, made_of):
+    """The results as a page. made_of: the commit whose programs ran."""
     found = sum(len(result.findings) for result in results)
     lines = ["# The last run of the fuzzers", "",
-             f"`scripts/fuzz`, {datetime.date.today()}, commit {commit()}: {counted(found, 'finding')}.", "",
+             f"`scripts/fuzz`, {datetime.date.today()}, commit {made_of}: {counted(found, 'finding')}.", "",
              "| target | minutes | executions | branches reached | of the program's | inputs kept | findings |",
              "| --- | --- | --- | --- | --- | --- | --- |"]
     for result in results:
