@@ -44,6 +44,10 @@ class FuzzTest(unittest.TestCase):
         return subprocess.run([SCRIPTS / "fuzz", "--out", self.out, *arguments], capture_output=True, text=True,
                               timeout=60, check=False, env=environment)
 
+    def row(self, result, name):
+        row, = [line for line in result.stdout.splitlines() if line.startswith(f"| {name} |")]
+        return row
+
     def test_every_target_is_counted_on_the_page(self):
         page = self.directory / "page.md"
         result = self.fuzz("--page", page)
@@ -52,16 +56,24 @@ class FuzzTest(unittest.TestCase):
         self.assertEqual(result.stdout, (self.out / "README.md").read_text())
         self.assertIn(": 0 findings.", result.stdout)
         for name in fuzzing.TARGETS:
-            self.assertIn(f"| {name} | 0 | 1234 | 321 | 5000 | 12 | 0 |", result.stdout)
+            self.assertIn("| 0 | 1234 | 321 | 5000 | 12 | 0 |", self.row(result, name))
 
     def test_a_finding_is_kept_and_told(self):
         result = self.fuzz("--target", "csv,scene", fake="finding fuzz_scene")
         self.assertEqual(result.returncode, 3, result.stderr)
         self.assertIn("1 finding.", result.stdout)
-        self.assertIn("| csv | 0 | 1234 | 321 | 5000 | 12 | 0 |", result.stdout)
-        self.assertIn("| scene | 0 | 2468 | 321 | 5000 | 12 | 1 |", result.stdout)  # the same again ended it
+        self.assertIn("| 0 | 1234 | 321 | 5000 | 12 | 0 |", self.row(result, "csv"))
+        self.assertIn("| 0 | 2468 | 321 | 5000 | 12 | 1 |", self.row(result, "scene"))  # the same again ended it
         self.assertNotIn("| options |", result.stdout)
         self.assertEqual([file.name for file in (self.out / "findings" / "scene").iterdir()], ["crash-1"])
+
+    def test_targets_that_ran_apart_stand_on_one_page(self):
+        self.assertEqual(self.fuzz("--target", "scene", fake="finding fuzz_scene").returncode, 3)
+        result = self.fuzz("--target", "csv")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("1 finding.", result.stdout)
+        self.assertEqual([self.row(result, name)[-4:] for name in ("csv", "scene")], [" 0 |", " 1 |"])
+        self.assertIn("0 findings.", self.fuzz("--target", "scene").stdout)
 
     def test_the_page_names_the_commit_from_before_the_run(self):
         repository = {"GIT_DIR": str(self.directory / ".git"), "GIT_WORK_TREE": str(self.directory)}
@@ -78,7 +90,8 @@ class FuzzTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         first = git("rev-list", "--max-parents=0", "HEAD").strip()
         self.assertNotEqual(first, git("rev-parse", "HEAD").strip())
-        self.assertIn(f"commit {first[:10]}:", result.stdout)
+        for name in fuzzing.TARGETS:
+            self.assertIn(f"| {first[:10]} |", self.row(result, name))
 
     def test_a_program_that_fails_by_itself_is_no_finding(self):
         result = self.fuzz(fake="failure fuzz_manifest")
