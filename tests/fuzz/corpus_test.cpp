@@ -1,10 +1,12 @@
 // What fuzzers found, and what takes them to every place they know, through the same functions: no fuzzer is needed.
 #include <gtest/gtest.h>
 
+#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
+#include "harness/experiment/options.h"
 #include "tests/fuzz/target.h"
 
 namespace cleave::fuzz {
@@ -46,6 +48,25 @@ TEST_P(Corpus, ItsChangesAreNoFindings) {
 
 INSTANTIATE_TEST_SUITE_P(Fuzz, Corpus, testing::ValuesIn(targets().begin(), targets().end()),
                          [](const auto& info) { return info.param.name; });
+
+// A value of another kind is refused at once, and nothing behind its reader is reached.
+TEST(OptionChanges, GiveNumbersToOptionsThatTakeThem) {
+  Random random(1);
+  int given = 0, numbers = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const std::string bytes = mutate_options("run\n--scene=rock_pile\n--out=o", random) + "\n";
+    for (const OptionSpec& spec : run_option_specs()) {
+      const std::size_t place = bytes.find("--" + spec.name + "=");
+      if (spec.kind != OptionKind::number || place == std::string::npos) continue;
+      const char* const first = bytes.data() + place + spec.name.size() + 3;
+      double value = 0;
+      ++given;
+      numbers += *std::from_chars(first, bytes.data() + bytes.size(), value).ptr == '\n';
+    }
+  }
+  EXPECT_GE(given, 100);
+  EXPECT_GE(numbers, given / 3);
+}
 
 TEST(CorpusFolder, HoldsTargetsOnlyAndIsSmall) {
   std::uintmax_t bytes = 0;
