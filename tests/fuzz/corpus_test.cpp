@@ -7,6 +7,9 @@
 #include <iterator>
 
 #include "harness/experiment/options.h"
+#include "harness/files/problem_file.h"
+#include "tests/fuzz/problem_image.h"
+#include "tests/fuzz/scratch_file.h"
 #include "tests/fuzz/target.h"
 
 namespace cleave::fuzz {
@@ -66,6 +69,14 @@ TEST(OptionChanges, GiveNumbersToOptionsThatTakeThem) {
   }
   EXPECT_GE(given, 100);
   EXPECT_GE(numbers, given / 3);
+}
+
+// Else what is edited is refused whatever the edit is, and the target tests nothing.
+TEST(SoundImages, AreRead) {
+  for (const std::string recipe : {std::string(1, '\0'), std::string(1, '\1')}) {
+    const ScratchFile file(problem_image(recipe));
+    EXPECT_EQ(read_problem_file(file.path()).problem.body_count(), 3);
+  }
 }
 
 TEST(CorpusFolder, HoldsTargetsOnlyAndIsSmall) {
