@@ -8,6 +8,7 @@
 
 #include "harness/experiment/options.h"
 #include "harness/files/problem_file.h"
+#include "tests/fuzz/child_reports.h"
 #include "tests/fuzz/problem_image.h"
 #include "tests/fuzz/scratch_file.h"
 #include "tests/fuzz/target.h"
@@ -77,6 +78,24 @@ TEST(SoundImages, AreRead) {
     const ScratchFile file(problem_image(recipe));
     EXPECT_EQ(read_problem_file(file.path()).problem.body_count(), 3);
   }
+}
+
+std::string stack_of(const std::vector<std::string>& modules) {
+  std::string text;
+  for (std::size_t i = 0; i < modules.size(); ++i)
+    text += "    #" + std::to_string(i) + " 0x12 (" + modules[i] + "+0x34) in f /a/b.cpp:1:2\n";
+  return text + "\n";
+}
+
+// The sanitiser is linked into the program: its frames are the program's.
+TEST(ChildReports, TellTheFaultsOfTheLibrary) {
+  const std::string own = fs::read_symlink("/proc/self/exe"), library = "/lib/libhdf5.so";
+  EXPECT_TRUE(is_own_fault(stack_of({own, own, own, library})));
+  EXPECT_TRUE(is_own_fault(stack_of({own, library, own}) + stack_of({own, own, library})));
+  EXPECT_TRUE(is_own_fault("a.cpp:1:2: runtime error: division by zero\n"));
+  EXPECT_FALSE(is_own_fault(stack_of({own, library, own, own})));
+  EXPECT_FALSE(is_own_fault(stack_of({own, own, library, own})));  // frees what is no memory
+  EXPECT_FALSE(is_own_fault(stack_of({own, library, own}) + stack_of({own, library, own})));
 }
 
 TEST(CorpusFolder, HoldsTargetsOnlyAndIsSmall) {
