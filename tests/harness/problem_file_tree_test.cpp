@@ -188,6 +188,26 @@ TEST_F(VerifiedTree, AnotherTreeOfTheSamePartsIsFound) {
   EXPECT_NE(verified(3).find("the parts are the same and their tree is another"), std::string::npos);
 }
 
+// Rows of one pair agree about their parts with those of the same arity, and with no others.
+TEST_F(VerifiedTree, AReplayWithAndWithoutATreePasses) {
+  const fs::path out = directory_ / "replayed";
+  const ProgramResult replayed =
+      run_cleave({"replay", path_, "--partitioner", "mix", "--refiner", "none,fm", "--max-bodies", "5",
+                  "--solver", "schur,pivot:schur-nested,pivot:schur-nested@arity=4", "--repeats", "1",
+                  "--write-solutions", "--out", out});
+  ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
+  const ProgramResult result = run_cleave({"verify", out});
+  EXPECT_EQ(result.exit_code, 0) << result.out;
+  const std::string file = out / path_.filename();
+  const auto partitions = read_problem_file(file).partitions;
+  EXPECT_TRUE(partitions.at("mix+fm+schur").parent_of_part.empty());
+  const std::vector<int>& two = partitions.at("mix+fm+pivot:schur-nested").parent_of_part;
+  const std::vector<int>& four = partitions.at("mix+fm+pivot:schur-nested@arity=4").parent_of_part;
+  EXPECT_GT(two.size(), 8u);
+  EXPECT_GT(four.size(), 8u);
+  EXPECT_NE(two, four);
+}
+
 TEST_F(VerifiedTree, ItsArityIsNeededAndTrue) {
   set_arity("4");
   EXPECT_NE(verified(3).find("differ"), std::string::npos);
