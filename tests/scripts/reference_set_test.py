@@ -5,6 +5,8 @@ import unittest
 
 from synthetic import ROOT
 
+from cleave_scripts.measurements import fuzzing
+
 RESULTS = ROOT / "results"
 
 
@@ -59,6 +61,15 @@ class ReferenceSetTest(unittest.TestCase):
         self.assertEqual((told["state"], told["not_run"]), ("complete", {}))
         self.assertEqual((told["total"]["above"], told["total"]["findings"]), (0, 0))
         self.assertEqual({path.name for path in (RESULTS / "torture").iterdir()}, {"torture.json", "torture.md"})
+
+    def test_the_fuzzers_ran_for_an_hour_in_all_and_found_nothing(self):
+        text = (RESULTS / "fuzz" / "README.md").read_text()
+        rows = {cells[0]: cells for cells in (line.strip("| ").split(" | ") for line in text.splitlines())
+                if cells[0] in fuzzing.TARGETS}
+        self.assertEqual(set(rows), set(fuzzing.TARGETS))
+        for name, (_, _, commit, minutes, *_, findings) in rows.items():
+            self.assertGreaterEqual(int(minutes), 12, name)
+            self.assertEqual((len(commit), findings), (10, "0"), name)
 
     def test_every_run_is_complete_and_knows_no_path_of_the_machine(self):
         for path in manifests():
