@@ -52,6 +52,19 @@ const Parameter& sweeps() {
   return parameter;
 }
 
+const Parameter& arity() {
+  static const Parameter parameter{
+      .name = "arity",
+      .kind = Kind::integer,
+      .default_value = "2",
+      .range = {2, 64},
+      .help =
+          "parts that a set of bodies is split into, again and again until each has "
+          "at most max-bodies",
+      .source = "Karypis and Kumar 1998"};
+  return parameter;
+}
+
 }  // namespace parameters
 
 DirectOptions read_direct_options(const SolveOptions& options, const Settings& settings) {

@@ -94,7 +94,7 @@ std::vector<GeomPair> find_near_pairs(std::span<const dGeomID> geoms) {
   boxes.reserve(geoms.size());
   for (const dGeomID geom : geoms) boxes.push_back(bounding_box(geom));
   std::vector<GeomPair> pairs;
-  for (const auto [low, high] : overlapping_boxes(boxes))
+  for (const auto& [low, high] : overlapping_boxes(boxes))
     if (can_touch(geoms[low], geoms[high])) pairs.push_back(make_pair(geoms[low], geoms[high]));
   std::sort(pairs.begin(), pairs.end());
   return pairs;

@@ -10,18 +10,24 @@ void BranchKernel::bind(const PreparedStep& step) {
   x_.resize(6 * static_cast<std::size_t>(step.body_count()));
 }
 
-void BranchKernel::analyze(const PreparedStep& step, std::span<const int> part_of_body,
-                           ParallelTasks& tasks) {
+void BranchKernel::choose_separators(const PreparedStep& step, const Parts& parts, Stages& stages) {
+  separators_.find(step, parts);
+  stages.of_body.assign(separators_.node_of_body().begin(), separators_.node_of_body().end());
+  stages.count = separators_.node_count();
+  stages.first_of_interface = separators_.part_count();
+}
+
+void BranchKernel::analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
   bind(step);
-  choose_stages(step, part_of_body, stages_);
+  choose_stages(step, parts, stages_);
   interface_bodies_ = static_cast<int>(
       std::ranges::count_if(stages_.of_body, [this](int s) { return s >= stages_.first_of_interface; }));
   matrix_.analyze_whole(step, stages_.of_body, stages_.count);
   list_tasks();
 }
 
-bool BranchKernel::rebind(const PreparedStep& step, std::span<const int>, ParallelTasks& tasks) {
+bool BranchKernel::rebind(const PreparedStep& step, const Parts&, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
   bind(step);
   return matrix_.rebind_whole(step);

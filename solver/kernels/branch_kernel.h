@@ -13,14 +13,15 @@
 
 #include "solver/block_matrix.h"
 #include "solver/kernels/kernel.h"
+#include "solver/separators.h"
 #include "solver/task_graph.h"
 
 namespace cleave {
 
 class BranchKernel : public Kernel {
  public:
-  void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
-  bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
+  void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
+  bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
   bool factor(const RowWeights& weights, ParallelTasks& tasks) override;
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override;
@@ -35,7 +36,9 @@ class BranchKernel : public Kernel {
     int count = 1;
     int first_of_interface = 1;
   };
-  virtual void choose_stages(const PreparedStep& step, std::span<const int> part_of_body, Stages& stages) = 0;
+  virtual void choose_stages(const PreparedStep& step, const Parts& parts, Stages& stages) = 0;
+  // Parts first, then what stands between them, level by level.
+  void choose_separators(const PreparedStep& step, const Parts& parts, Stages& stages);
 
  private:
   void bind(const PreparedStep& step);
@@ -46,6 +49,7 @@ class BranchKernel : public Kernel {
 
   const PreparedStep* step_ = nullptr;
   Stages stages_;
+  Separators separators_;
   WeightedRows rows_;
   BlockMatrix matrix_;
   int interface_bodies_ = 0;

@@ -6,7 +6,7 @@ namespace cleave {
 namespace {
 
 class MonolithicKernel : public BranchKernel {
-  void choose_stages(const PreparedStep&, std::span<const int>, Stages&) override {}  // one
+  void choose_stages(const PreparedStep&, const Parts&, Stages&) override {}  // one
 };
 
 }  // namespace

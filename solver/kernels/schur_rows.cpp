@@ -44,8 +44,8 @@ struct Part {
 
 class SchurRowsKernel : public Kernel {
  public:
-  void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
-  bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
+  void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
+  bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
   bool factor(const RowWeights& weights, ParallelTasks& tasks) override;
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override;
@@ -54,7 +54,7 @@ class SchurRowsKernel : public Kernel {
   double interface_mflop() const override { return interface_.mflop(); }
 
  private:
-  void split(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks);
+  void split(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks);
   void order_cut_rows(int part);
   void number_active_rows();
   void choose_active(int part);
@@ -75,18 +75,16 @@ class SchurRowsKernel : public Kernel {
   std::vector<double> lambda_;
 };
 
-void SchurRowsKernel::split(const PreparedStep& step, std::span<const int> part_of_body,
-                            ParallelTasks& tasks) {
+void SchurRowsKernel::split(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
   step_ = &step;
-  split_.split(step, part_of_body);
+  split_.split(step, parts.part_of_body);
   if (static_cast<int>(parts_.size()) < split_.part_count) parts_.resize(split_.part_count);
   interface_row_.resize(split_.cut_rows.size());
 }
 
-void SchurRowsKernel::analyze(const PreparedStep& step, std::span<const int> part_of_body,
-                              ParallelTasks& tasks) {
-  split(step, part_of_body, tasks);
+void SchurRowsKernel::analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
+  split(step, parts, tasks);
   tasks.run(Stage::analyze, split_.part_count, [&](int i) {
     const PartRows& rows = split_.parts[i];
     parts_[i].matrix.analyze(step, rows.bodies, split_.local_of_body, rows.groups);
@@ -95,9 +93,8 @@ void SchurRowsKernel::analyze(const PreparedStep& step, std::span<const int> par
 }
 
 // Every part decides for itself.
-bool SchurRowsKernel::rebind(const PreparedStep& step, std::span<const int> part_of_body,
-                             ParallelTasks& tasks) {
-  split(step, part_of_body, tasks);
+bool SchurRowsKernel::rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
+  split(step, parts, tasks);
   tasks.run(Stage::analyze, split_.part_count, [&](int i) {
     const PartRows& rows = split_.parts[i];
     if (!parts_[i].matrix.rebind(step, split_.local_of_body, rows.groups)) {
