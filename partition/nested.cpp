@@ -14,8 +14,7 @@
 namespace cleave {
 namespace {
 
-// Measured on recorded and synthetic piles: more makes trees of one task after the other, less leaves small children
-// (README.md).
+// Measured on recorded and synthetic piles: more saves little and makes larger children (README.md).
 constexpr double kMostJoined = 1.2;
 
 // A node of the tree as it is made: parents before children.

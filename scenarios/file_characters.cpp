@@ -8,7 +8,8 @@ namespace cleave::scene_file {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-constexpr std::size_t kMostQuotesInside = 2;  // before the three that end a string: """a"""""
+constexpr std::string_view kBeforeStrings = " \t\r\n=,.[{";  // or the start of the file
+constexpr std::size_t kMostQuotesInside = 2;                 // before the three that end a string: """a"""""
 
 std::size_t string_length(std::string_view rest, std::string_view quote) {
   const bool is_long = quote.size() > 1, has_escapes = quote.front() == '"';
@@ -22,9 +23,12 @@ std::size_t string_length(std::string_view rest, std::string_view quote) {
   return end;
 }
 
-// Of the comment or string that begins here; 0: none does.
-std::size_t free_length(std::string_view rest) {
+// Of the comment or string that begins here; 0: none does. A quote within a word begins none: the parser takes it for a
+// part of the word.
+std::size_t free_length(std::string_view text, std::size_t at) {
+  const std::string_view rest = text.substr(at);
   if (rest.starts_with('#')) return std::min(rest.find('\n'), rest.size());
+  if (at > 0 && kBeforeStrings.find(text[at - 1]) == std::string_view::npos) return 0;
   for (const std::string_view quote : {"\"\"\"", "'''", "\"", "'"})
     if (rest.starts_with(quote)) return string_length(rest, quote);
   return 0;
@@ -32,10 +36,11 @@ std::size_t free_length(std::string_view rest) {
 
 }  // namespace
 
-void check_characters(const std::string& text, const std::string& name) {
-  std::size_t i = text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0;
-  while (i < text.size()) {
-    const std::size_t length = free_length(std::string_view(text).substr(i));
+void check_characters(const std::string& with_mark, const std::string& name) {
+  std::string_view text = with_mark;
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = free_length(text, i);
     if (length == 0 && static_cast<unsigned char>(text[i]) >= 0x80)
       throw std::invalid_argument(
           name + ":" +

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <memory>
+#include <limits>
 #include <numeric>
 
 namespace cleave {
@@ -13,82 +13,68 @@ namespace {
 
 constexpr int kSideBySide = 6;   // groups that one core works on at a time
 constexpr int kSlabRows = 600;   // about so many in a slab: five microseconds of work
-constexpr int kLineDoubles = 8;  // in a cache line
-constexpr int kBodyStride = kLineDoubles;
-constexpr double kNoVelocity[6] = {};
 constexpr int kWordColors = 64;  // colours in one word of used_colors_
 
-// One group on its way through its rows: the velocities of its two bodies stay in registers.
+// A group of rows on its way: the velocities of its two bodies stay in registers.
 struct Traveller {
-  const double *jacobian, *mass_jacobian;
-  double* impulse;
-  int row, rows_left;
-  __m256d u[3];
+  const SlabRow* row;
+  float* impulse;
+  int rows_left;
+  __m256 u_a, u_b;
 };
 
 struct Arrays {
-  const StepProblem& problem;
   std::span<const RowGroup> groups;
-  const double* mass_jacobian;
-  const double* inverse_diagonal;
   const int *place_of_body, *place_of_group;
-  double *impulse, *v;  // by place
+  const SlabRow* rows;
+  float* impulse;
+  SlabBody* bodies;  // by place, and one that stands still
+  int still;
 };
 
-// u = (v of body_a, v of body_b), zero for static.
 inline void load(const Arrays& arrays, int group, Traveller& t) {
   const RowGroup& g = arrays.groups[group];
-  const double* a = arrays.v + static_cast<long>(kBodyStride) * arrays.place_of_body[g.body_a];
-  const double* b =
-      g.body_b < 0 ? kNoVelocity : arrays.v + static_cast<long>(kBodyStride) * arrays.place_of_body[g.body_b];
-  t.u[0] = _mm256_loadu_pd(a);
-  t.u[1] = _mm256_set_m128d(_mm_loadu_pd(b), _mm_loadu_pd(a + 4));
-  t.u[2] = _mm256_loadu_pd(b + 2);
-  t.jacobian = arrays.problem.jacobian.data() + 12L * g.first_row;
-  t.mass_jacobian = arrays.mass_jacobian + 12L * g.first_row;
+  t.u_a = _mm256_load_ps(arrays.bodies[arrays.place_of_body[g.body_a]].velocity);
+  t.u_b =
+      _mm256_load_ps(arrays.bodies[g.body_b < 0 ? arrays.still : arrays.place_of_body[g.body_b]].velocity);
+  t.row = arrays.rows + arrays.place_of_group[group];
   t.impulse = arrays.impulse + arrays.place_of_group[group];
-  t.row = g.first_row;
   t.rows_left = g.row_count;
 }
 
 inline void store(const Arrays& arrays, int group, const Traveller& t) {
   const RowGroup& g = arrays.groups[group];
-  double* a = arrays.v + static_cast<long>(kBodyStride) * arrays.place_of_body[g.body_a];
-  _mm256_storeu_pd(a, t.u[0]);
-  _mm_storeu_pd(a + 4, _mm256_castpd256_pd128(t.u[1]));
-  if (g.body_b < 0) return;
-  double* b = arrays.v + static_cast<long>(kBodyStride) * arrays.place_of_body[g.body_b];
-  _mm_storeu_pd(b, _mm256_extractf128_pd(t.u[1], 1));
-  _mm256_storeu_pd(b + 2, t.u[2]);
+  _mm256_store_ps(arrays.bodies[arrays.place_of_body[g.body_a]].velocity, t.u_a);
+  if (g.body_b >= 0) _mm256_store_ps(arrays.bodies[arrays.place_of_body[g.body_b]].velocity, t.u_b);
+}
+
+inline float sum_of(__m256 x) {
+  const __m128 four = _mm_add_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
+  const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+  return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
 }
 
 // The next row of each. Every traveller's arithmetic is its own: it does not matter which others are beside it.
 template <int Count>
-inline void advance(const Arrays& arrays, Traveller* travellers) {
-  double change[Count];
+inline void advance(Traveller* travellers) {
+  float change[Count];
   for (int i = 0; i < Count; ++i) {
     const Traveller& t = travellers[i];
-    __m256d sum = _mm256_mul_pd(_mm256_loadu_pd(t.jacobian), t.u[0]);
-    sum = _mm256_fmadd_pd(_mm256_loadu_pd(t.jacobian + 4), t.u[1], sum);
-    sum = _mm256_fmadd_pd(_mm256_loadu_pd(t.jacobian + 8), t.u[2], sum);
-    const __m128d half = _mm_add_pd(_mm256_castpd256_pd128(sum), _mm256_extractf128_pd(sum, 1));
-    const double jv = _mm_cvtsd_f64(_mm_add_sd(half, _mm_unpackhi_pd(half, half)));
-    const int r = t.row;
-    const StepProblem& p = arrays.problem;
-    const double old = *t.impulse;
-    // Of lambda - w / d, all but the product with J is known before the velocities are.
-    const double inverse = arrays.inverse_diagonal[r];
-    const double still = old - (p.compliance[r] * old - p.rhs[r]) * inverse;
-    const double next = std::min(std::max(std::fma(-jv, inverse, still), p.lower[r]), p.upper[r]);
-    *t.impulse = next;
+    const SlabRow& row = *t.row;
+    const float jv = sum_of(_mm256_fmadd_ps(_mm256_load_ps(row.jacobian_b), t.u_b,
+                                            _mm256_mul_ps(_mm256_load_ps(row.jacobian_a), t.u_a)));
+    const float old = *t.impulse;
+    const float next =
+        std::min(std::max(std::fma(old, row.kept(), row.push()) - jv, row.lower()), row.upper());
     change[i] = next - old;
+    *t.impulse = next;
   }
   for (int i = 0; i < Count; ++i) {
     Traveller& t = travellers[i];
-    const __m256d step = _mm256_set1_pd(change[i]);
-    for (int k = 0; k < 3; ++k)
-      t.u[k] = _mm256_fmadd_pd(_mm256_loadu_pd(t.mass_jacobian + 4 * k), step, t.u[k]);
-    t.jacobian += 12, t.mass_jacobian += 12, ++t.impulse, ++t.row, --t.rows_left;
+    const __m256 step = _mm256_set1_ps(change[i]);
+    t.u_a = _mm256_fmadd_ps(_mm256_load_ps(t.row->mass_jacobian_a), step, t.u_a);
+    t.u_b = _mm256_fmadd_ps(_mm256_load_ps(t.row->mass_jacobian_b), step, t.u_b);
+    ++t.row, ++t.impulse, --t.rows_left;
   }
 }
 
@@ -101,9 +87,9 @@ void visit_set(const Arrays& arrays, std::span<const int> which) {
   Traveller travellers[Count];
   for (int i = 0; i < Count; ++i) load(arrays, which[i], travellers[i]);
   // Longer ones come first, so the last of them has the fewest rows.
-  while (travellers[Count - 1].rows_left > 0) advance<Count>(arrays, travellers);
+  while (travellers[Count - 1].rows_left > 0) advance<Count>(travellers);
   for (int i = 0; i < Count; ++i) {
-    while (travellers[i].rows_left > 0) advance<1>(arrays, travellers + i);
+    while (travellers[i].rows_left > 0) advance<1>(travellers + i);
     store(arrays, which[i], travellers[i]);
   }
 }
@@ -121,13 +107,12 @@ void visit(const Arrays& arrays, std::span<const int> which) {
 void SlabSweeps::bind(const PreparedStep& step) {
   assert(step.set().axes().empty());
   step_ = &step;
-  inverse_diagonal_.resize(step.row_count());
-  for (int r = 0; r < step.row_count(); ++r) inverse_diagonal_[r] = 1 / step.diagonal()[r];
   measure_distances(step);
   cut_slabs(step);
   color_groups(step);
   sort_groups(step);
   assign_places(step);
+  pack_rows(step);
   build_graph();
 }
 
@@ -269,8 +254,8 @@ void SlabSweeps::build_graph() {
   graph_.build(kMostSweeps * tasks, waits_, places_);
 }
 
-// What two threads write stays apart in memory: velocities by slab, each body in a cache line of its own, and impulses
-// by set.
+// What two threads write stays apart in memory: velocities by slab, each body in a cache line of its own, and rows by
+// set, in the order in which they are visited.
 void SlabSweeps::assign_places(const PreparedStep& step) {
   const int n = step.body_count();
   slab_first_.assign(slab_count_ + 1, 0);
@@ -278,54 +263,95 @@ void SlabSweeps::assign_places(const PreparedStep& step) {
   std::partial_sum(slab_first_.begin(), slab_first_.end(), slab_first_.begin());
   place_of_body_.resize(n);
   for (int body = 0; body < n; ++body) place_of_body_[body] = slab_first_[slab_of_body_[body]]++;
-  velocity_.resize(static_cast<std::size_t>(kBodyStride) * (n + 1));
+  bodies_.resize(n + 1);
+  bodies_[n] = {};
   place_of_group_.resize(groups_.size());
   int place = 0;
-  for (int set = 0; set < set_count(); ++set) {
-    for (int color = 0; color < color_count(set); ++color) {
-      for (const int g : groups_of(set, color)) {
-        place_of_group_[g] = place;
-        place += step.groups()[g].row_count;
-      }
-    }
-    place += kLineDoubles;
+  for (const int g : groups_) {
+    place_of_group_[g] = place;
+    place += step.groups()[g].row_count;
   }
+  rows_.resize(place);
   impulse_.resize(place);
 }
 
-double* SlabSweeps::velocities() {
-  void* begin = velocity_.data();
-  std::size_t space = velocity_.size() * sizeof(double);
-  return static_cast<double*>(std::align(kLineDoubles * sizeof(double), sizeof(double), begin, space));
+void SlabSweeps::pack_rows(const PreparedStep& step) {
+  const StepProblem& p = step.problem();
+  const auto bound = [](double x) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(x, -kMost, kMost));
+  };
+  for (const int g : groups_) {
+    const RowGroup& group = step.groups()[g];
+    for (int k = 0; k < group.row_count; ++k) {
+      const int r = group.first_row + k;
+      SlabRow& row = rows_[place_of_group_[g] + k];
+      row = {};
+      const double inverse = 1 / step.diagonal()[r];
+      for (int c = 0; c < 6; ++c) {
+        row.jacobian_a[c] = static_cast<float>(p.jacobian[12L * r + c] * inverse);
+        row.jacobian_b[c] = static_cast<float>(p.jacobian[12L * r + 6 + c] * inverse);
+        row.mass_jacobian_a[c] = static_cast<float>(step.mass_jacobian()[12L * r + c]);
+        row.mass_jacobian_b[c] = static_cast<float>(step.mass_jacobian()[12L * r + 6 + c]);
+      }
+      row.kept() = static_cast<float>(1 - p.compliance[r] * inverse);
+      row.push() = static_cast<float>(p.rhs[r] * inverse);
+      row.lower() = bound(p.lower[r]);
+      row.upper() = bound(p.upper[r]);
+    }
+  }
+}
+
+void SlabSweeps::take_in(std::span<const double> impulse, std::span<const double> v) {
+  for (std::size_t body = 0; body < place_of_body_.size(); ++body) {
+    SlabBody& own = bodies_[place_of_body_[body]];
+    own = {};
+    for (int c = 0; c < 6; ++c) own.velocity[c] = static_cast<float>(v[6 * body + c]);
+  }
+  const auto groups = step_->groups();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    for (int k = 0; k < groups[g].row_count; ++k)
+      impulse_[place_of_group_[g] + k] = static_cast<float>(impulse[groups[g].first_row + k]);
+  }
+}
+
+// What is at a bound there is at the bound here, to the last digit.
+void SlabSweeps::give_out(std::span<double> impulse, std::span<double> v) const {
+  for (std::size_t body = 0; body < place_of_body_.size(); ++body) {
+    const SlabBody& own = bodies_[place_of_body_[body]];
+    for (int c = 0; c < 6; ++c) v[6 * body + c] = own.velocity[c];
+  }
+  const auto groups = step_->groups();
+  const StepProblem& p = step_->problem();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    for (int k = 0; k < groups[g].row_count; ++k) {
+      const SlabRow& row = rows_[place_of_group_[g] + k];
+      const float found = impulse_[place_of_group_[g] + k];
+      const int r = groups[g].first_row + k;
+      impulse[r] = found <= row.lower()   ? p.lower[r]
+                   : found >= row.upper() ? p.upper[r]
+                                          : std::clamp<double>(found, p.lower[r], p.upper[r]);
+    }
+  }
 }
 
 void SlabSweeps::run(int sweeps, std::span<double> impulse, std::span<double> v, ParallelTasks& tasks) {
   assert(sweeps <= kMostSweeps);
-  const auto groups = step_->groups();
-  const Arrays arrays{step_->problem(),
-                      groups,
-                      step_->mass_jacobian().data(),
-                      inverse_diagonal_.data(),
+  const Arrays arrays{step_->groups(),
                       place_of_body_.data(),
                       place_of_group_.data(),
+                      rows_.data(),
                       impulse_.data(),
-                      velocities()};
-  for (std::size_t body = 0; body < place_of_body_.size(); ++body)
-    std::copy_n(v.data() + 6 * body, 6, arrays.v + static_cast<long>(kBodyStride) * place_of_body_[body]);
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    std::copy_n(impulse.data() + groups[g].first_row, groups[g].row_count,
-                arrays.impulse + place_of_group_[g]);
+                      bodies_.data(),
+                      static_cast<int>(place_of_body_.size())};
+  take_in(impulse, v);
   tasks.run(Stage::predict, graph_, [&](int task) {
     if (task / set_count() >= sweeps) return;
     check_stop(tasks.stop());
     const int set = task % set_count();
     for (int color = 0; color < color_count(set); ++color) visit(arrays, groups_of(set, color));
   });
-  for (std::size_t body = 0; body < place_of_body_.size(); ++body)
-    std::copy_n(arrays.v + static_cast<long>(kBodyStride) * place_of_body_[body], 6, v.data() + 6 * body);
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    std::copy_n(arrays.impulse + place_of_group_[g], groups[g].row_count,
-                impulse.data() + groups[g].first_row);
+  give_out(impulse, v);
 }
 
 }  // namespace cleave

@@ -121,9 +121,7 @@ void check_grown(const ProblemFile& file, const StoredPartition& partition, Step
                  RowCheck& check) {
   if (content_of("partitioner", algorithm_name(partition.partitioner)) != nullptr) return;
   try {
-    const SplitSetup setup = read_split_setup(partition);
-    const Splitter splitter(setup.partitioner, setup.refiner, setup.skip_small_islands);
-    const Split split = splitter.run(file.problem, file.step);
+    const Split split = Splitter(read_split_setup(partition)).run(file.problem, file.step);
     found.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
   } catch (const std::invalid_argument&) {
     return;

@@ -27,12 +27,6 @@
 #define CLEAVE_BUILD_TYPE "unknown"
 #endif
 
-#ifdef __clang__
-#define CLEAVE_COMPILER __VERSION__  // begins with "Clang"
-#else
-#define CLEAVE_COMPILER "GCC " __VERSION__
-#endif
-
 namespace cleave {
 namespace {
 
@@ -67,11 +61,20 @@ std::string dotted(int major, int minor, int patch) {
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(patch);
 }
 
+// Of Clang __VERSION__ may begin with who packed it: "Debian Clang".
+std::string compiler() {
+#ifdef __clang__
+  return "Clang " + dotted(__clang_major__, __clang_minor__, __clang_patchlevel__);
+#else
+  return "GCC " __VERSION__;
+#endif
+}
+
 }  // namespace
 
 BuildInfo build_info() {
-  return {CLEAVE_VERSION,  CLEAVE_GIT_HASH,      CLEAVE_GIT_DIRTY,
-          CLEAVE_COMPILER, CLEAVE_COMPILE_FLAGS, CLEAVE_BUILD_TYPE};
+  return {CLEAVE_VERSION, CLEAVE_GIT_HASH,      CLEAVE_GIT_DIRTY,
+          compiler(),     CLEAVE_COMPILE_FLAGS, CLEAVE_BUILD_TYPE};
 }
 
 std::string version_text(const BuildInfo& build) {

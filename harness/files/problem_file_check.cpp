@@ -8,6 +8,7 @@
 #include "harness/base/numbers.h"
 #include "harness/base/printable_text.h"
 #include "harness/files/problem_file_fields.h"
+#include "solver/parts.h"
 
 namespace cleave {
 namespace {
@@ -101,6 +102,16 @@ void require_texts(const ProblemFile& file, Requirements& require) {
   }
 }
 
+// Of a tree; the ids of one level are for `verify`.
+std::string find_parts_error(const ProblemFile& file) {
+  for (const auto& [label, partition] : file.partitions) {
+    const Parts parts(partition.part_of_body, partition.parent_of_part);
+    const std::string error = PartsCheck().find_error(parts, file.problem.body_count());
+    if (!error.empty()) return "partition/" + printable(label) + "/" + error;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string find_contents_error(const ProblemFile& file) {
@@ -110,7 +121,7 @@ std::string find_contents_error(const ProblemFile& file) {
     if (std::string error = find_problem_error(file.problem); !error.empty()) return error;
   if (file.shapes) require_shapes(*file.shapes, file.problem.body_count(), require);
   require_texts(file, require);
-  return require.error();
+  return require.error().empty() ? find_parts_error(file) : require.error();
 }
 
 }  // namespace cleave

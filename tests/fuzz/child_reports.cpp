@@ -47,18 +47,22 @@ std::string take_child_report() {
   return report;
 }
 
-// A stack is lines "    #0 0x0123 (module+0x4567)"; the first one is where it happened, others tell whose memory it was.
+// A stack is lines "    #0 0x0123 (module+0x4567)", with names and places behind where they are known. The first one is
+// where it happened, others tell whose memory it was. The innermost frames may be the sanitiser's own, which is linked
+// into this program: up to two where the memory was misused, one where it was allocated.
 bool is_own_fault(const std::string& report) {
+  constexpr int kInnermost = 3, kAllocating = 2;
   std::istringstream lines(report);
-  bool is_first_stack = true, innermost_is_own = false;
+  int stack = 0, frame = 0, own_frames = 0;
   for (std::string line; std::getline(lines, line);) {
-    const std::size_t frame = line.find_first_not_of(' ');
-    if (frame == std::string::npos || line[frame] != '#') continue;
-    const bool is_own = is_of_program(line);
-    if (line.compare(frame, 3, "#0 ") == 0) innermost_is_own = is_own;
-    if (line.compare(frame, 3, "#1 ") != 0) continue;
-    if (is_own && (innermost_is_own || !is_first_stack)) return true;
-    is_first_stack = false;
+    const std::size_t start = line.find_first_not_of(' ');
+    if (start == std::string::npos || line[start] != '#') continue;
+    const bool is_innermost = line.compare(start, 3, "#0 ") == 0;
+    stack += is_innermost;
+    frame = is_innermost ? 0 : frame + 1;
+    own_frames = (is_innermost ? 0 : own_frames) + is_of_program(line);
+    const bool is_own_memory = stack > 1 && frame == kAllocating - 1 && is_of_program(line);
+    if (is_own_memory || (stack == 1 && frame == kInnermost - 1 && own_frames == kInnermost)) return true;
   }
   return report.find("runtime error:") != std::string::npos;
 }

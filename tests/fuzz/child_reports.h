@@ -8,7 +8,7 @@ namespace cleave::fuzz {
 // All that children forked since the last call have said; always empty where no sanitiser is built in.
 std::string take_child_report();
 
-// Whether the report blames this program and not a library: the innermost two frames are its own (one of them may be
+// Whether the report blames this program and not a library: the innermost three frames are its own (up to two of them may be
 // the sanitiser's), or memory that was overrun is.
 bool is_own_fault(const std::string& report);
 

@@ -4,7 +4,7 @@
 
 #include "harness/base/numbers.h"
 #include "harness/commands/verify_table.h"
-#include "tests/fuzz/memory_file.h"
+#include "tests/fuzz/scratch_file.h"
 #include "tests/fuzz/target.h"
 
 namespace cleave::fuzz {
@@ -37,7 +37,7 @@ void check_number(const StepsTable& table, std::size_t row, const std::string& c
   double value = 0;
   if (refuses([&] { value = table.number(row, column); })) return;
   const std::string text = number_text(value);
-  const double again = StepsTable(MemoryFile("x\n" + text + "\n").path()).number(0, "x");
+  const double again = StepsTable(ScratchFile("x\n" + text + "\n").path()).number(0, "x");
   require(number_text(again) == text, "a number is read as another one: " + text);
 }
 
@@ -54,7 +54,7 @@ void check_row(const StepsTable& table, std::size_t row, const Cells& header, co
 }  // namespace
 
 void read_csv(std::string_view bytes) {
-  const MemoryFile file(bytes);
+  const ScratchFile file(bytes);
   std::optional<StepsTable> table;
   if (refuses([&] { table.emplace(file.path()); })) return;
   const std::vector<std::string> lines = lines_of(bytes);

@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "harness/files/manifest_reader.h"
-#include "tests/fuzz/memory_file.h"
 #include "tests/fuzz/options_roundtrip.h"
+#include "tests/fuzz/scratch_file.h"
 #include "tests/fuzz/target.h"
 
 namespace cleave::fuzz {
@@ -20,7 +20,7 @@ constexpr std::array<NamedCommand, 3> kCommands = {
 }  // namespace
 
 void read_manifest_bytes(std::string_view bytes) {
-  const MemoryFile file(bytes);
+  const ScratchFile file(bytes);
   for (const NamedCommand& command : kCommands) {
     std::map<std::string, std::string> stored;
     if (refuses([&] { stored = read_manifest_options(file.path(), command.name); })) continue;

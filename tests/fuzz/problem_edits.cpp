@@ -153,7 +153,8 @@ void make_link(Recipe& recipe, hid_t file) {
       H5Lcreate_soft(other.c_str(), file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
       break;
     case 1:
-      H5Lcreate_external("no such file", other.c_str(), file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+      H5Lcreate_external("/dev/null/no such file", other.c_str(), file, name.c_str(), H5P_DEFAULT,
+                         H5P_DEFAULT);
       break;
     case 2:
       H5Lcreate_hard(file, other.c_str(), file, name.c_str(), H5P_DEFAULT, H5P_DEFAULT);

@@ -11,8 +11,8 @@
 #include "solver/problem_hash.h"
 #include "solver/residual.h"
 #include "tests/fuzz/child_reports.h"
-#include "tests/fuzz/memory_file.h"
 #include "tests/fuzz/problem_image.h"
+#include "tests/fuzz/scratch_file.h"
 #include "tests/fuzz/scratch_folder.h"
 #include "tests/fuzz/target.h"
 
@@ -56,7 +56,7 @@ void require_foreign_end(const std::string& reason) {
 }  // namespace
 
 void read_problem(std::string_view recipe) {
-  const MemoryFile file(problem_image(recipe));
+  const ScratchFile file(problem_image(recipe));
   std::optional<ProblemFile> problem;
   std::string reason;
   if (refuses([&] { problem = read_problem_file(file.path()); }, &reason)) {
@@ -64,7 +64,7 @@ void read_problem(std::string_view recipe) {
     return;
   }
   const std::string first = written(*problem);
-  require(written(read_problem_file(MemoryFile(first).path())) == first, "a file is read as another one");
+  require(written(read_problem_file(ScratchFile(first).path())) == first, "a file is read as another one");
   use_problem(problem->problem, problem->problem.warm_impulse);
   use_solutions(*problem);
 }

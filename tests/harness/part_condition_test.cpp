@@ -32,7 +32,11 @@ StepProblem random_problem(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   const auto uniform = [&] { return static_cast<double>(random() >> 11) / 9007199254740992.0; };
   StepProblem problem;
-  for (int body = 0; body < 3; ++body) add_body(problem, std::pow(10, 3 * uniform()), 0.1 + uniform());
+  for (int body = 0; body < 3; ++body) {
+    // One after the other: compilers differ in the order in which they evaluate arguments.
+    const double inertia_kg_m2 = 0.1 + uniform();
+    add_body(problem, std::pow(10, 3 * uniform()), inertia_kg_m2);
+  }
   for (int row = 0; row < 8; ++row) {
     std::array<double, 12> jacobian{};
     const int kind = row % 3;

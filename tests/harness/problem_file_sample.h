@@ -98,7 +98,7 @@ inline ProblemFile sample_file(int bodies = 5, std::uint64_t seed = 1) {
   solution.impulse = random.numbers(file.problem.row_count());
   solution.velocity = random.numbers(6 * bodies);
   file.solutions["mix+fm+schur"] = solution;
-  StoredPartition partition{"mix", "fm", {}, std::vector<int>(bodies, 0)};
+  StoredPartition partition{"mix", "fm", {}, std::vector<int>(bodies, 0), {}};
   using Kind = Parameter::Kind;
   partition.parameters = {{"as_printed", Kind::flag, "true"},
                           {"edge_weight", Kind::word, "constraints"},

@@ -151,8 +151,6 @@ TEST(FullDisk, AManifestThatCannotBeWrittenAgainDoesNotSayRunning) {
   EXPECT_EQ(parsed.out, "failed\n");
 }
 
-// The sanitizers themselves want more memory than that.
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 TEST(LittleMemory, IsARowOrALine) {
   int short_of_memory = 0;
   for (const char* kbytes : {"40000", "50000", "60000", "70000", "80000", "150000"}) {
@@ -178,7 +176,6 @@ TEST(LittleMemory, IsARowOrALine) {
   }
   EXPECT_GE(short_of_memory, 3);
 }
-#endif
 
 // A command that has begun to write rows.
 struct Running {

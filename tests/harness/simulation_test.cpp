@@ -11,6 +11,7 @@
 
 #include "harness/base/names.h"
 #include "harness/experiment/run_summary.h"
+#include "harness/experiment/small_islands.h"
 #include "harness/experiment/splitter.h"
 #include "partition/registry.h"
 #include "tests/harness/machine_columns.h"

@@ -11,7 +11,7 @@ if(CLEAVE_SANITIZE MATCHES "thread")
   find_library(ARCHER archer HINTS ${OPENMP_FOLDER} REQUIRED)
   find_program(SYMBOLIZER NAMES llvm-symbolizer-14 llvm-symbolizer REQUIRED)
   set(TEST_PROPERTIES ENVIRONMENT_MODIFICATION "OMP_TOOL_LIBRARIES=set:${ARCHER}" ENVIRONMENT
-      "TSAN_OPTIONS=halt_on_error=1:exitcode=66:ignore_noninstrumented_modules=1:external_symbolizer_path=${SYMBOLIZER}")
+      "TSAN_OPTIONS=halt_on_error=1:exitcode=66:allocator_may_return_null=1:ignore_noninstrumented_modules=1:external_symbolizer_path=${SYMBOLIZER}")
   set_source_files_properties(solver/allocation_counter.cpp PROPERTIES COMPILE_DEFINITIONS CLEAVE_THREAD_SANITISER)
 else()
   set(PRESET asan)

@@ -123,6 +123,8 @@ TEST(FileErrors, WhatTheParserDoesNotExpect) {
       {"'a' \uFCFF", "s.toml:1" + rule},
       {"\"\"\"a\n\"\"\"\"\u00E4", "s.toml:2" + rule},
       {"\"\\\"\" = \u00E4", "s.toml:1" + rule},
+      {"a = 0'''b\uFCFF", "s.toml:1" + rule},
+      {"a = 0\"b \u00E4\"", "s.toml:1" + rule},
       {"\uFEFF# \u0450 \uFCFF\n" + body(), ""},
       {body("'rock'", "\"\u00E4\""),
        "s.toml:2: body[0].group: '\u00E4' is not a name of letters, digits, '-' and '_' other than 'world'"},

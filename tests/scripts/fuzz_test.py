@@ -12,7 +12,7 @@ from cleave_scripts.measurements import fuzzing
 
 # Prints what libFuzzer prints, and what FAKE says: a finding, a failure of its own, or nothing.
 PROGRAM = """#!/usr/bin/python3
-import os, pathlib, sys
+import os, pathlib, subprocess, sys
 folder = pathlib.Path([word for word in sys.argv if word.startswith("-artifact_prefix=")][0].split("=")[1])
 print("INFO: Loaded 1 modules   (5000 inline 8-bit counters): 5000")
 print("#100 DONE   cov: 321 ft: 400 corp: 12/345b lim: 4096 exec/s: 10 rss: 40Mb")
@@ -20,6 +20,8 @@ name, fake = pathlib.Path(sys.argv[0]).name, os.environ.get("FAKE", "")
 if fake == "finding " + name:
     (folder / "crash-1").write_text("x")
     print(f"artifact_prefix='{folder}/'; Test unit written to {folder}/crash-1")
+if fake == "commit":
+    subprocess.run(["git", "commit", "--quiet", "--allow-empty", "--message=later"], check=True)
 print("stat::number_of_executed_units: 1234")
 sys.exit({"": 0, "finding " + name: 77, "failure " + name: 1}.get(fake, 0))
 """
@@ -37,10 +39,14 @@ class FuzzTest(unittest.TestCase):
             program.write_text(PROGRAM)
             program.chmod(0o755)
 
-    def fuzz(self, *arguments, fake="", programs=None):
-        environment = {**os.environ, "CLEAVE_FUZZ_PROGRAMS": str(programs or self.directory), "FAKE": fake}
+    def fuzz(self, *arguments, fake="", programs=None, **more):
+        environment = {**os.environ, "CLEAVE_FUZZ_PROGRAMS": str(programs or self.directory), "FAKE": fake, **more}
         return subprocess.run([SCRIPTS / "fuzz", "--out", self.out, *arguments], capture_output=True, text=True,
                               timeout=60, check=False, env=environment)
+
+    def row(self, result, name):
+        row, = [line for line in result.stdout.splitlines() if line.startswith(f"| {name} |")]
+        return row
 
     def test_every_target_is_counted_on_the_page(self):
         page = self.directory / "page.md"
@@ -50,16 +56,42 @@ class FuzzTest(unittest.TestCase):
         self.assertEqual(result.stdout, (self.out / "README.md").read_text())
         self.assertIn(": 0 findings.", result.stdout)
         for name in fuzzing.TARGETS:
-            self.assertIn(f"| {name} | 0 | 1234 | 321 | 5000 | 12 | 0 |", result.stdout)
+            self.assertIn("| 0 | 1234 | 321 | 5000 | 12 | 0 |", self.row(result, name))
 
     def test_a_finding_is_kept_and_told(self):
         result = self.fuzz("--target", "csv,scene", fake="finding fuzz_scene")
         self.assertEqual(result.returncode, 3, result.stderr)
         self.assertIn("1 finding.", result.stdout)
-        self.assertIn("| csv | 0 | 1234 | 321 | 5000 | 12 | 0 |", result.stdout)
-        self.assertIn("| scene | 0 | 2468 | 321 | 5000 | 12 | 1 |", result.stdout)  # the same again ended it
+        self.assertIn("| 0 | 1234 | 321 | 5000 | 12 | 0 |", self.row(result, "csv"))
+        self.assertIn("| 0 | 2468 | 321 | 5000 | 12 | 1 |", self.row(result, "scene"))  # the same again ended it
         self.assertNotIn("| options |", result.stdout)
         self.assertEqual([file.name for file in (self.out / "findings" / "scene").iterdir()], ["crash-1"])
+
+    def test_targets_that_ran_apart_stand_on_one_page(self):
+        self.assertEqual(self.fuzz("--target", "scene", fake="finding fuzz_scene").returncode, 3)
+        result = self.fuzz("--target", "csv")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("1 finding.", result.stdout)
+        self.assertEqual([self.row(result, name)[-4:] for name in ("csv", "scene")], [" 0 |", " 1 |"])
+        self.assertIn("0 findings.", self.fuzz("--target", "scene").stdout)
+
+    def test_the_page_names_the_commit_from_before_the_run(self):
+        repository = {"GIT_DIR": str(self.directory / ".git"), "GIT_WORK_TREE": str(self.directory)}
+        repository |= {f"GIT_{who}_{what}": "x" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
+
+        def git(*words):
+            return subprocess.run(["git", *words], capture_output=True, text=True, check=True,
+                                  env={**os.environ, **repository}).stdout
+
+        git("init")
+        git("commit", "--allow-empty", "--message=first")
+        (self.directory / ".git" / "info" / "exclude").write_text("*")
+        result = self.fuzz(fake="commit", **repository)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        first = git("rev-list", "--max-parents=0", "HEAD").strip()
+        self.assertNotEqual(first, git("rev-parse", "HEAD").strip())
+        for name in fuzzing.TARGETS:
+            self.assertIn(f"| {first[:10]} |", self.row(result, name))
 
     def test_a_program_that_fails_by_itself_is_no_finding(self):
         result = self.fuzz(fake="failure fuzz_manifest")

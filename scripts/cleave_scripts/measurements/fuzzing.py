@@ -1,6 +1,7 @@
 """Runs of the fuzz targets (tests/fuzz): programs of libFuzzer, their corpora, findings and counts."""
 import dataclasses
 import datetime
+import json
 import os
 import pathlib
 import re
@@ -13,6 +14,7 @@ from cleave_scripts.results.command import say
 from cleave_scripts.results.command_line import counted
 from cleave_scripts.results.errors import AlreadyTold, ResultError
 from cleave_scripts.results.programs import ROOT, run_and_watch
+from cleave_scripts.results.whole_file import write_text
 
 TARGETS = ("csv", "manifest", "options", "scene", "problem")
 SOURCES = ROOT / "tests" / "fuzz"
@@ -22,7 +24,10 @@ TIMEOUT_S = 120  # of one input; far more than any takes, also on a busy machine
 
 @dataclasses.dataclass
 class Result:
+    """Of the last run of a target; kept as DIR/NAME.json, so that targets may run apart, or again after a mend."""
     target: str
+    date: str
+    commit: str  # whose program ran
     minutes: float
     executions: int
     edges: int  # of the program's branches that were reached
@@ -58,8 +63,9 @@ def run(words, log):
         return run_and_watch(words, stdout=file, stderr=subprocess.STDOUT, env={**os.environ, **in_memory})
 
 
-def fuzz(programs, name, out, seconds):
-    """Fuzzes one target until the time is over, again after each finding; a known one again ends it."""
+def fuzz(programs, name, out, seconds, made_of):
+    """Fuzzes one target until the time is over, again after each finding; a known one again ends it.
+    made_of: the commit of the programs."""
     corpus, folder, log = out / "corpus" / name, out / "findings" / name, out / f"{name}.log"
     for place in (corpus, folder):
         place.mkdir(parents=True, exist_ok=True)
@@ -77,9 +83,11 @@ def fuzz(programs, name, out, seconds):
         if found[-1] in findings:
             break
         findings.add(found[-1])
-    return Result(name, (time.monotonic() - begin) / 60, executions, last_number(r"cov: (\d+)", text),
-                  last_number(r"\((\d+) inline 8-bit counters\)", text), last_number(r"corp: (\d+)", text),
-                  sorted(findings))
+    result = Result(name, str(datetime.date.today()), made_of, (time.monotonic() - begin) / 60, executions,
+                    last_number(r"cov: (\d+)", text), last_number(r"\((\d+) inline 8-bit counters\)", text),
+                    last_number(r"corp: (\d+)", text), sorted(findings))
+    write_text(out / f"{name}.json", json.dumps(dataclasses.asdict(result), indent=1) + "\n")
+    return result
 
 
 def last_number(pattern, text):
@@ -104,21 +112,23 @@ def minimise(programs, name, out):
 
 
 def commit():
+    """What is checked out now."""
     def git(*arguments):
         return subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, text=True, check=True).stdout.strip()
     return git("rev-parse", "--short=10", "HEAD") + (" with local changes" if git("status", "--porcelain") else "")
 
 
-def page(results):
-    """The results as a page."""
+def page(out):
+    """The last result of each target that has run there."""
+    kept = [out / f"{name}.json" for name in TARGETS]
+    results = [Result(**json.loads(file.read_text(encoding="utf-8"))) for file in kept if file.exists()]
     found = sum(len(result.findings) for result in results)
-    lines = ["# The last run of the fuzzers", "",
-             f"`scripts/fuzz`, {datetime.date.today()}, commit {commit()}: {counted(found, 'finding')}.", "",
-             "| target | minutes | executions | branches reached | of the program's | inputs kept | findings |",
-             "| --- | --- | --- | --- | --- | --- | --- |"]
+    lines = ["# The last runs of the fuzzers", "", f"`scripts/fuzz`: {counted(found, 'finding')}.", "",
+             "| target | date | commit | minutes | executions | branches reached | of the program's | inputs kept | findings |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
     for result in results:
-        lines.append(f"| {result.target} | {result.minutes:.0f} | {result.executions} | {result.edges} | {result.edges_in_all} | "
-                     f"{result.inputs} | {len(result.findings)} |")
+        lines.append(f"| {result.target} | {result.date} | {result.commit} | {result.minutes:.0f} | {result.executions} | "
+                     f"{result.edges} | {result.edges_in_all} | {result.inputs} | {len(result.findings)} |")
     lines += ["", "The program of a target holds code that it cannot reach: every solver, for instance. What each target reads and what",
               "counts as a finding: [tests/fuzz/README.md](../../tests/fuzz/README.md).", ""]
     return "\n".join(lines)

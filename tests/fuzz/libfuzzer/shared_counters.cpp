@@ -11,9 +11,11 @@
 // The counters' section, as the linker names its ends.
 extern "C" std::uint8_t __start___sancov_cntrs[], __stop___sancov_cntrs[];
 
-// A crash in a child is told by its report, not by its signal, which says nothing about whose fault it was.
+// A crash in a child is told by its report, not by its signal, which says nothing about whose fault it was. Its frames
+// name their module also where they have names of functions (child_reports.cpp).
 extern "C" const char* __asan_default_options() {
-  return "handle_segv=2:handle_sigbus=2:handle_sigfpe=2:handle_sigill=2";
+  return "handle_segv=2:handle_sigbus=2:handle_sigfpe=2:handle_sigill=2:"
+         "stack_trace_format='    #%n %p (%m+%o) %F %L'";
 }
 
 // Whole pages only: what else lies on the first and the last one is no counter.
