@@ -95,6 +95,37 @@ BodyGraph::BodyGraph(std::span<const double> mass_kg, std::span<const Constraint
   }
 }
 
+void BodyGraph::add_body(double mass_kg) {
+  mass_kg_.push_back(mass_kg);
+  first_.push_back(static_cast<int>(neighbour_.size()));
+}
+
+// Neighbours stay ascending, because bodies keep their order within a set.
+std::vector<BodyGraph> BodyGraph::induced(std::span<const int> set_of_body, int sets) const {
+  const int n = body_count();
+  std::vector<int> bodies(sets, 0), index(n, -1);
+  for (int i = 0; i < n; ++i)
+    if (set_of_body[i] >= 0) index[i] = bodies[set_of_body[i]]++;
+  std::vector<BodyGraph> graphs(sets);
+  for (int s = 0; s < sets; ++s) {
+    graphs[s].step_ = step_;
+    graphs[s].mass_kg_.reserve(bodies[s]);
+    graphs[s].first_.reserve(bodies[s] + 1);
+  }
+  for (int i = 0; i < n; ++i) {
+    if (set_of_body[i] < 0) continue;
+    BodyGraph& graph = graphs[set_of_body[i]];
+    for (int k = first_[i]; k < first_[i + 1]; ++k) {
+      if (set_of_body[neighbour_[k]] != set_of_body[i]) continue;
+      graph.neighbour_.push_back(index[neighbour_[k]]);
+      graph.constraints_.push_back(constraints_[k]);
+      graph.rows_.push_back(rows_[k]);
+    }
+    graph.add_body(mass_kg_[i]);
+  }
+  return graphs;
+}
+
 namespace {
 
 // Flood fill over the edges whose ends carry the same label; pieces are numbered by their lowest body.

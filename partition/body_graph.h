@@ -58,7 +58,13 @@ class BodyGraph {
                                              : rows_[half_edge];
   }
 
+  // The graphs of disjoint sets of bodies, each with the edges among its own: body k of graph s is the k-th
+  // body in ascending order of those whose set is s. set_of_body: (n) 0..sets-1, or -1 for bodies in none.
+  std::vector<BodyGraph> induced(std::span<const int> set_of_body, int sets) const;
+
  private:
+  void add_body(double mass_kg);
+
   std::vector<double> mass_kg_;   // (n)
   std::vector<int> first_{0};     // (n + 1)
   std::vector<int> neighbour_;    // (2 edges)

@@ -42,6 +42,7 @@ class Partitioner {
     max_bodies_ = max_bodies;
   }
   std::optional<int> max_bodies() const { return max_bodies_; }
+  const PartsPromise& promised() const { return promise_; }
 
  private:
   virtual Partition do_run(const BodyGraph& graph) const = 0;

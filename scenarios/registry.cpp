@@ -7,6 +7,7 @@
 #include "scenarios/log_tower.h"
 #include "scenarios/rock_pile.h"
 #include "scenarios/scene.h"
+#include "scenarios/silo.h"
 
 namespace cleave {
 
@@ -24,6 +25,9 @@ std::span<const SceneEntry> scenes() {
       {{"large_rock_pile", "three times as many rocks of mixed masses dropped into a square pit",
         "Liu and Andrews 2022, Large Rock Pile", rock_pile_parameters("600", "10,100,1000")},
        make_rock_pile},
+      {{"silo", "boxes laid close in a pit as wide as they are high, nearly at rest from the start",
+        "scenarios/README.md", silo_parameters()},
+       make_silo},
       {{"ladder_stack", "equal boxes in a stack, their contacts reported as often as asked for",
         "scenarios/README.md", ladder_stack_parameters()},
        make_ladder_stack},

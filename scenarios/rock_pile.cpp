@@ -15,7 +15,6 @@ using Vector = std::array<double, 3>;
 constexpr double kShortestEdge_m = 0.5;
 constexpr double kLongestEdge_m = 0.8;
 constexpr double kJitter_m = 0.05;
-constexpr double kGridLayers = 8;  // the rocks come to rest about three deep
 constexpr double kLargestTaper = 0.3;
 
 // What a rock is made from. Every shape fits into the box with these edges, except the sphere, whose diameter
@@ -77,6 +76,11 @@ const RockShape& rock_shape(const std::string& name) {
                        [&](const RockShape& shape) { return shape.name == name; });
 }
 
+// Rocks along a side of the grid. Eight layers of the grid come to rest about three deep.
+int grid_columns(int bodies, int depth) {
+  return static_cast<int>(std::ceil(std::sqrt(3.0 * bodies / (8.0 * depth))));
+}
+
 class RockPile : public Scene {
  public:
   SceneContent build(dWorldID world, dSpaceID space, const Settings& settings, std::uint64_t seed) override {
@@ -86,7 +90,7 @@ class RockPile : public Scene {
     const std::vector<double> masses_kg = settings.numbers("mass");
     const RockShape& shape = rock_shape(settings.text("rock-shape"));
 
-    const int columns = static_cast<int>(std::ceil(std::sqrt(bodies / kGridLayers)));
+    const int columns = grid_columns(bodies, settings.integer("depth"));
     const double cell_m = 2 * (shape.bounding_radius_m + kJitter_m);
     builder.add_square_pit(columns * cell_m / 2);
     for (int i = 0; i < bodies; ++i) {
@@ -109,11 +113,33 @@ class RockPile : public Scene {
 
 }  // namespace
 
+Parameter pile_bodies(const char* default_bodies) {
+  return {"bodies", Parameter::Kind::integer, default_bodies, {1, kMostPileBodies}, {},
+          "",       "number of rocks"};
+}
+
+Parameter pile_mass(const char* default_mass_kg) {
+  return {"mass",
+          Parameter::Kind::numbers,
+          default_mass_kg,
+          {1e-6, 1e9},
+          {},
+          "",
+          "kg; of several values each rock draws one"};
+}
+
 std::vector<Parameter> rock_pile_parameters(const char* default_bodies, const char* default_mass_kg) {
   using Kind = Parameter::Kind;
   std::vector<std::string> shapes;
   for (const RockShape& shape : kRockShapes) shapes.push_back(shape.name);
-  return {{"bodies", Kind::integer, default_bodies, {1, 20000}, {}, "", "number of rocks"},
+  return {pile_bodies(default_bodies),
+          {"depth",
+           Kind::integer,
+           "3",
+           {1, 50},
+           {},
+           "",
+           "layers of rocks on each other, about, once they are at rest"},
           {"rock-shape",
            Kind::word,
            "box",
@@ -121,13 +147,7 @@ std::vector<Parameter> rock_pile_parameters(const char* default_bodies, const ch
            shapes,
            "",
            "shape of every rock; clump is four spheres on one body"},
-          {"mass",
-           Kind::numbers,
-           default_mass_kg,
-           {1e-6, 1e9},
-           {},
-           "",
-           "kg; of several values each rock draws one"}};
+          pile_mass(default_mass_kg)};
 }
 
 std::unique_ptr<Scene> make_rock_pile() { return std::make_unique<RockPile>(); }

@@ -8,7 +8,14 @@
 
 namespace cleave {
 
-// --bodies, --rock-shape, --mass. Piles that differ only in defaults are rows of the registry.
+// Problems of this many bodies have some millions of rows.
+constexpr int kMostPileBodies = 200000;
+
+// --bodies and --mass of any pile.
+Parameter pile_bodies(const char* default_bodies);
+Parameter pile_mass(const char* default_mass_kg);
+
+// --bodies, --depth, --rock-shape, --mass. Piles that differ only in defaults are rows of the registry.
 std::vector<Parameter> rock_pile_parameters(const char* default_bodies, const char* default_mass_kg);
 
 std::unique_ptr<Scene> make_rock_pile();

@@ -33,7 +33,14 @@ void BlockCholesky::analyze(int node_count, std::span<const std::pair<int, int>>
   symbolic_.analyze(node_count, edges, stage_of_node, stage_count);
   panels_.resize(symbolic_.factor_size());
   updates_.resize(symbolic_.update_size());
-  position_values_.resize(6 * static_cast<std::size_t>(node_count));
+  carry_.resize(symbolic_.carry_size());
+  scratch_offset_.clear();
+  long scratch = 0;
+  for (const Branch& branch : symbolic_.branches()) {
+    scratch_offset_.push_back(scratch);
+    scratch += 6L * branch.most_rows_below;
+  }
+  scratch_.resize(scratch);
 }
 
 // Its place among the rows of the supernode of its column; -1 outside the pattern.
@@ -58,11 +65,10 @@ BlockCholesky::Place BlockCholesky::place(int first_node, int second_node) const
   return place;
 }
 
-void BlockCholesky::set_zero(int stage) {
-  const auto [first, last] = symbolic_.stage_range(stage);
-  if (first == last) return;
-  const Supernode& end = symbolic_.supernodes()[last - 1];
-  std::fill(panels_.begin() + symbolic_.supernodes()[first].panel_offset,
+void BlockCholesky::set_zero(int branch_index) {
+  const Branch& branch = symbolic_.branches()[branch_index];
+  const Supernode& end = symbolic_.supernodes()[branch.last];
+  std::fill(panels_.begin() + symbolic_.supernodes()[branch.first].panel_offset,
             panels_.begin() + end.panel_offset + 36L * end.width * end.row_count, 0.0);
 }
 
@@ -114,9 +120,9 @@ bool BlockCholesky::factor_panel(const Supernode& s) {
   return true;
 }
 
-bool BlockCholesky::factor(int stage) {
-  const auto [first, last] = symbolic_.stage_range(stage);
-  for (int i = first; i < last; ++i) {
+bool BlockCholesky::factor(int branch_index) {
+  const Branch& branch = symbolic_.branches()[branch_index];
+  for (int i = branch.first; i <= branch.last; ++i) {
     const Supernode& s = symbolic_.supernodes()[i];
     std::fill_n(updates_.begin() + s.update_offset, 36L * s.rows_below() * s.rows_below(), 0.0);
     for (int child : symbolic_.children(i)) add_update(symbolic_.supernodes()[child], s);
@@ -125,50 +131,69 @@ bool BlockCholesky::factor(int stage) {
   return true;
 }
 
-void BlockCholesky::forward(int stage, double* x, double* carry, std::vector<double>& scratch) const {
-  const auto [first, last] = symbolic_.stage_range(stage);
-  const int last_stage_begin = carry == nullptr ? symbolic_.node_count() : symbolic_.last_stage_position();
-  for (int i = first; i < last; ++i) {
-    const Supernode& s = symbolic_.supernodes()[i];
+// What the child branches left, then column by column; what goes above the branch is left to its parent.
+void BlockCholesky::forward(int branch_index, double* x) {
+  const Branch& branch = symbolic_.branches()[branch_index];
+  const auto supernodes = symbolic_.supernodes();
+  const int *rows = symbolic_.rows().data(), *carry_index = symbolic_.carry_index().data();
+  double* carry = carry_.data() + branch.carry_offset;
+  std::fill_n(carry, 6 * supernodes[branch.last].rows_below(), 0.0);
+  const auto add = [&](int entry, const double* values) {
+    double* into = rows[entry] < branch.end_position ? x + 6L * rows[entry] : carry + 6L * carry_index[entry];
+    for (int c = 0; c < 6; ++c) into[c] += values[c];
+  };
+  for (const int child : symbolic_.child_branches(branch_index)) {
+    const Branch& from = symbolic_.branches()[child];
+    const Supernode& root = supernodes[from.last];
+    const int* in_parent = symbolic_.row_in_parent().data() + root.first_row + root.width;
+    for (int k = 0; k < root.rows_below(); ++k) {
+      add(supernodes[root.parent].first_row + in_parent[k], carry_.data() + from.carry_offset + 6L * k);
+    }
+  }
+  double* scratch = scratch_.data() + scratch_offset_[branch_index];
+  for (int i = branch.first; i <= branch.last; ++i) {
+    const Supernode& s = supernodes[i];
     const int ld = 6 * s.row_count, below = 6 * s.rows_below();
     const double* block = panel(s);
-    double* own = x + 6 * s.first_position;
+    double* own = x + 6L * s.first_position;
     for (int k = 0; k < s.width; ++k) {
       multiply_lower(block + 6 * k + 6L * k * ld, ld, own + 6 * k);
       subtract_matrix_vector(6 * (s.width - k - 1), 6, block + 6 * (k + 1) + 6L * k * ld, ld, own + 6 * k,
                              own + 6 * (k + 1));
     }
-    scratch.assign(below, 0.0);
-    subtract_matrix_vector(below, 6 * s.width, block + 6 * s.width, ld, own, scratch.data());
-    for (int k = 0; k < s.rows_below(); ++k) {
-      const int position = symbolic_.rows()[s.first_row + s.width + k];
-      double* into = position < last_stage_begin
-                         ? x + 6 * position
-                         : carry + 6 * symbolic_.late_index()[s.first_row + s.width + k];
-      for (int c = 0; c < 6; ++c) into[c] += scratch[6 * k + c];
-    }
+    std::fill_n(scratch, below, 0.0);
+    subtract_matrix_vector(below, 6 * s.width, block + 6 * s.width, ld, own, scratch);
+    for (int k = 0; k < s.rows_below(); ++k) add(s.first_row + s.width + k, scratch + 6 * k);
   }
 }
 
-void BlockCholesky::backward(int stage, double* x, std::vector<double>& scratch) const {
-  const auto [first, last] = symbolic_.stage_range(stage);
-  for (int i = last - 1; i >= first; --i) {
+void BlockCholesky::backward(int branch_index, double* x) {
+  const Branch& branch = symbolic_.branches()[branch_index];
+  double* scratch = scratch_.data() + scratch_offset_[branch_index];
+  for (int i = branch.last; i >= branch.first; --i) {
     const Supernode& s = symbolic_.supernodes()[i];
     const int ld = 6 * s.row_count, below = 6 * s.rows_below();
     const double* block = panel(s);
-    double* own = x + 6 * s.first_position;
-    scratch.resize(below);
+    double* own = x + 6L * s.first_position;
     for (int k = 0; k < s.rows_below(); ++k) {
-      const double* from = x + 6 * symbolic_.rows()[s.first_row + s.width + k];
-      std::copy(from, from + 6, scratch.begin() + 6 * k);
+      const double* from = x + 6L * symbolic_.rows()[s.first_row + s.width + k];
+      std::copy(from, from + 6, scratch + 6 * k);
     }
-    subtract_transpose_vector(below, 6 * s.width, block + 6 * s.width, ld, scratch.data(), own);
+    subtract_transpose_vector(below, 6 * s.width, block + 6 * s.width, ld, scratch, own);
     for (int k = s.width - 1; k >= 0; --k) {
       subtract_transpose_vector(6 * (s.width - k - 1), 6, block + 6 * (k + 1) + 6L * k * ld, ld,
                                 own + 6 * (k + 1), own + 6 * k);
       multiply_upper(block + 6 * k + 6L * k * ld, ld, own + 6 * k);
     }
   }
+}
+
+void BlockCholesky::forward(double* x) {
+  for (int b = 0; b < static_cast<int>(symbolic_.branches().size()); ++b) forward(b, x);
+}
+
+void BlockCholesky::backward(double* x) {
+  for (int b = static_cast<int>(symbolic_.branches().size()) - 1; b >= 0; --b) backward(b, x);
 }
 
 void BlockCholesky::to_positions(std::span<const double> by_node, std::vector<double>& by_position) const {
@@ -182,15 +207,6 @@ void BlockCholesky::to_nodes(std::span<const double> by_position, std::span<doub
   for (int p = 0; p < symbolic_.node_count(); ++p) {
     std::copy_n(by_position.data() + 6 * p, 6, by_node.data() + 6 * symbolic_.node_at_position()[p]);
   }
-}
-
-void BlockCholesky::solve(std::span<double> x) {
-  to_positions(x, position_values_);
-  for (int stage = 0; stage < symbolic_.stage_count(); ++stage)
-    forward(stage, position_values_.data(), nullptr, scratch_);
-  for (int stage = symbolic_.stage_count() - 1; stage >= 0; --stage)
-    backward(stage, position_values_.data(), scratch_);
-  to_nodes(position_values_, x);
 }
 
 void BlockCholesky::forward_many(double* y, int ld, std::span<const int> first,

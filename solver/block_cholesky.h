@@ -32,24 +32,22 @@ class BlockCholesky {
   Place place(int first_node, int second_node) const;
   bool holds(int first_node, int second_node) const { return row_of_block(first_node, second_node) >= 0; }
   double* panels() { return panels_.data(); }
-  void set_zero(int stage);
+  void set_zero(int branch);
 
-  // Factors the supernodes of one stage; the last stage comes after all others. False when a pivot is not
-  // positive.
-  bool factor(int stage);
+  // Factors the supernodes of one branch, after its child branches. False when a pivot is not positive.
+  bool factor(int branch);
 
-  // x (n, 6) <- H^-1 x. scratch is kept inside: one solve at a time.
-  void solve(std::span<double> x);
-
-  // The same in parts, for stages that run in parallel; x is in position order, 6 doubles each. Contributions
-  // of a stage to positions of the last stage are added to `carry` (6 doubles for each of
-  // symbolic().late_positions(stage)) instead of x when carry is given.
-  void forward(int stage, double* x, double* carry, std::vector<double>& scratch) const;
-  void backward(int stage, double* x, std::vector<double>& scratch) const;
+  // x <- L^-1 x and x <- L^-T x, x in position order, 6 doubles each. One branch after its child branches, or after
+  // its parent; each writes to its own places of x alone, and forward leaves what it adds above to its parent.
+  void forward(int branch, double* x);
+  void backward(int branch, double* x);
+  // The same of all branches.
+  void forward(double* x);
+  void backward(double* x);
   void to_positions(std::span<const double> by_node, std::vector<double>& by_position) const;
   void to_nodes(std::span<const double> by_position, std::span<double> by_node) const;
 
-  // Y <- L^-1 Y for many right-hand sides of a single-stage factor. Transposed storage: right-hand side k of
+  // Y <- L^-1 Y for many right-hand sides. Transposed storage: right-hand side k of
   // unknown c (position order) at y[k + c * ld]. In the columns of supernode s only right-hand sides first[s]
   // .. last[s] may be non-zero; both bounds are even.
   void forward_many(double* y, int ld, std::span<const int> first, std::span<const int> last) const;
@@ -63,7 +61,8 @@ class BlockCholesky {
 
   BlockSymbolic symbolic_;
   std::vector<double> panels_, updates_;
-  std::vector<double> position_values_, scratch_;
+  std::vector<double> carry_, scratch_;  // of all branches
+  std::vector<long> scratch_offset_;
 };
 
 }  // namespace cleave

@@ -10,11 +10,17 @@
 namespace cleave {
 namespace {
 
-// target += the 6x6 block at `gram` (ld 12), or its transpose.
-void add_block(double* target, int ld, const double* gram, bool transposed) {
+// target += the 6x6 block, or its transpose.
+void add_block(double* target, int ld, const double* block, int block_ld, bool transposed) {
   for (int c = 0; c < 6; ++c) {
-    for (int r = 0; r < 6; ++r) target[r + c * ld] += transposed ? gram[c + 12 * r] : gram[r + 12 * c];
+    for (int r = 0; r < 6; ++r)
+      target[r + c * ld] += transposed ? block[c + block_ld * r] : block[r + block_ld * c];
   }
+}
+
+// A block of a 12x12 Gram matrix, out of it.
+void copy_block(const double* gram, double* block) {
+  for (int c = 0; c < 6; ++c) std::copy_n(gram + 12 * c, 6, block + 6 * c);
 }
 
 }  // namespace
@@ -23,11 +29,9 @@ void BlockMatrix::analyze(const PreparedStep& step, std::span<const int> bodies,
                           std::span<const int> local_of_body, std::span<const int> groups,
                           std::span<const int> stage_of_local, int stage_count) {
   bodies_.assign(bodies.begin(), bodies.end());
-  stage_of_local_.assign(bodies.size(), 0);
-  if (!stage_of_local.empty()) stage_of_local_.assign(stage_of_local.begin(), stage_of_local.end());
   list_edges(step, local_of_body, groups);
   cholesky_.analyze(static_cast<int>(bodies.size()), edges_, stage_of_local, stage_count);
-  sort_by_stage(stage_of_local_, stage_local_first_, stage_locals_);
+  place_bodies();
   place_groups(step, local_of_body, groups);
 }
 
@@ -68,88 +72,119 @@ void BlockMatrix::list_edges(const PreparedStep& step, std::span<const int> loca
   }
 }
 
-// Counting sort, stable: items of stage s at first[s] .. first[s + 1].
-void BlockMatrix::sort_by_stage(std::span<const int> stage_of_item, std::vector<int>& first,
-                                std::vector<int>& items) const {
-  const int stage_count = cholesky_.symbolic().stage_count();
-  first.assign(stage_count + 1, 0);
-  items.resize(stage_of_item.size());
-  for (int stage : stage_of_item) ++first[stage];
-  for (int stage = 0, begin = 0; stage <= stage_count; ++stage) begin += std::exchange(first[stage], begin);
-  for (std::size_t i = 0; i < stage_of_item.size(); ++i)
-    items[first[stage_of_item[i]]++] = static_cast<int>(i);
-  for (int stage = stage_count; stage > 0; --stage) first[stage] = first[stage - 1];
+// Counting sort, stable: items of branch b at first[b] .. first[b + 1].
+void BlockMatrix::sort_by_branch(std::span<const int> branch_of_item, std::vector<int>& first,
+                                 std::vector<int>& items) const {
+  first.assign(branch_count() + 1, 0);
+  items.resize(branch_of_item.size());
+  for (int branch : branch_of_item) ++first[branch];
+  for (int branch = 0, begin = 0; branch <= branch_count(); ++branch)
+    begin += std::exchange(first[branch], begin);
+  for (std::size_t i = 0; i < branch_of_item.size(); ++i)
+    items[first[branch_of_item[i]]++] = static_cast<int>(i);
+  for (int branch = branch_count(); branch > 0; --branch) first[branch] = first[branch - 1];
   first[0] = 0;
+}
+
+void BlockMatrix::place_bodies() {
+  const BlockSymbolic& symbolic = cholesky_.symbolic();
+  local_branch_.clear();
+  for (std::size_t local = 0; local < bodies_.size(); ++local) {
+    const int supernode = symbolic.supernode_at_position()[symbolic.position_of_node()[local]];
+    local_branch_.push_back(symbolic.supernodes()[supernode].branch);
+  }
+  sort_by_branch(local_branch_, branch_local_first_, branch_locals_);
 }
 
 void BlockMatrix::place_groups(const PreparedStep& step, std::span<const int> local_of_body,
                                std::span<const int> groups) {
   step_ = &step;
-  const auto stages_of = [&](int g) {
+  // Branches are numbered in the order of elimination.
+  const auto branches_of = [&](int g) {
     const RowGroup& group = step.groups()[g];
-    const int stage_a = stage_of_local_[local_of_body[group.body_a]];
-    return std::pair(stage_a, group.body_b < 0 ? stage_a : stage_of_local_[local_of_body[group.body_b]]);
+    const int branch_a = local_branch_[local_of_body[group.body_a]];
+    return std::pair(branch_a, group.body_b < 0 ? branch_a : local_branch_[local_of_body[group.body_b]]);
   };
-  group_stage_.clear();
-  for (int g : groups) group_stage_.push_back(std::min(stages_of(g).first, stages_of(g).second));
-  sort_by_stage(group_stage_, entry_first_, group_order_);
+  group_branch_.clear();
+  for (int g : groups) group_branch_.push_back(std::min(branches_of(g).first, branches_of(g).second));
+  sort_by_branch(group_branch_, entry_first_, group_order_);
   entries_.clear();
-  late_entries_.clear();
+  late_places_.clear();
+  late_branch_.clear();
   for (int place : group_order_) {
     const RowGroup& group = step.groups()[groups[place]];
-    const int a = local_of_body[group.body_a], b = group.body_b < 0 ? -1 : local_of_body[group.body_b];
+    const int a = local_of_body[group.body_a];
     Entry entry;
     entry.group = groups[place];
-    std::tie(entry.stage_a, entry.stage_b) = stages_of(entry.group);
     entry.a = cholesky_.place(a, a);
-    if (b >= 0) entry.b = cholesky_.place(b, b), entry.ab = cholesky_.place(a, b);
-    if (b < 0) entry.stage_b = -1;
-    if (b >= 0 && entry.stage_a != entry.stage_b) {
-      entry.late = static_cast<int>(late_entries_.size());
-      late_entries_.push_back(static_cast<int>(entries_.size()));
+    entry.has_b = group.body_b >= 0;
+    if (entry.has_b) {
+      const int b = local_of_body[group.body_b];
+      entry.b = cholesky_.place(b, b), entry.ab = cholesky_.place(a, b);
+    }
+    const auto [branch_a, branch_b] = branches_of(entry.group);
+    if (branch_a != branch_b) {
+      entry.a_is_late = branch_a > branch_b, entry.b_is_late = !entry.a_is_late;
+      entry.late = static_cast<int>(late_places_.size());
+      late_places_.push_back(entry.a_is_late ? entry.a : entry.b);
+      late_branch_.push_back(std::max(branch_a, branch_b));
     }
     entries_.push_back(entry);
   }
-  late_gram_.resize(144 * late_entries_.size());
-  late_any_.resize(late_entries_.size());
+  sort_by_branch(late_branch_, late_first_, late_slots_);
+  late_blocks_.resize(36 * late_places_.size());
+  late_any_.resize(late_places_.size());
 }
 
-void BlockMatrix::assemble(const WeightedRows& rows, int stage) {
-  cholesky_.set_zero(stage);
+void BlockMatrix::assemble(const WeightedRows& rows, int branch) {
+  cholesky_.set_zero(branch);
   double* panels = cholesky_.panels();
-  for (int k = stage_local_first_[stage]; k < stage_local_first_[stage + 1]; ++k) {
-    const int local = stage_locals_[k];
+  for (int k = branch_local_first_[branch]; k < branch_local_first_[branch + 1]; ++k) {
+    const int local = branch_locals_[k];
     const BlockCholesky::Place place = cholesky_.place(local, local);
-    const double* mass = step_->problem().mass.data() + 36 * bodies_[local];
+    const double* mass = step_->problem().mass.data() + 36L * bodies_[local];
     for (int c = 0; c < 6; ++c) {
       for (int r = 0; r < 6; ++r) panels[place.offset + r + c * place.leading_dimension] += mass[r + 6 * c];
     }
   }
   const double *jacobian = rows.jacobian(), *d = rows.d().data();
-  double local[144];
-  for (int i = entry_first_[stage]; i < entry_first_[stage + 1]; ++i) {
+  double gram[144];
+  for (int i = entry_first_[branch]; i < entry_first_[branch + 1]; ++i) {
     const Entry& entry = entries_[i];
     const RowGroup& group = step_->groups()[entry.group];
-    double* gram = entry.late < 0 ? local : late_gram_.data() + 144 * entry.late;
     const bool any =
-        weighted_gram(group.row_count, jacobian + 12 * group.first_row, d + group.first_row, gram);
+        weighted_gram(group.row_count, jacobian + 12L * group.first_row, d + group.first_row, gram);
     if (entry.late >= 0) late_any_[entry.late] = any;
     if (!any) continue;
-    if (entry.stage_a == stage) add_block(panels + entry.a.offset, entry.a.leading_dimension, gram, false);
-    if (entry.stage_b < 0) continue;
-    if (entry.stage_b == stage)
-      add_block(panels + entry.b.offset, entry.b.leading_dimension, gram + 78, false);
-    add_block(panels + entry.ab.offset, entry.ab.leading_dimension, gram + 6, entry.ab.transposed);
+    if (!entry.a_is_late) add_block(panels + entry.a.offset, entry.a.leading_dimension, gram, 12, false);
+    if (!entry.has_b) continue;
+    if (!entry.b_is_late) add_block(panels + entry.b.offset, entry.b.leading_dimension, gram + 78, 12, false);
+    add_block(panels + entry.ab.offset, entry.ab.leading_dimension, gram + 6, 12, entry.ab.transposed);
+    if (entry.late >= 0)
+      copy_block(gram + (entry.a_is_late ? 0 : 78), late_blocks_.data() + 36L * entry.late);
   }
-  if (stage + 1 < cholesky_.symbolic().stage_count()) return;
-  for (int i : late_entries_) {
-    const Entry& entry = entries_[i];
-    const bool a_is_late = entry.stage_a > entry.stage_b;
-    if (!late_any_[entry.late]) continue;
-    const BlockCholesky::Place& place = a_is_late ? entry.a : entry.b;
-    add_block(panels + place.offset, place.leading_dimension,
-              late_gram_.data() + 144 * entry.late + (a_is_late ? 0 : 78), false);
+}
+
+bool BlockMatrix::factor(int branch) {
+  for (int k = late_first_[branch]; k < late_first_[branch + 1]; ++k) {
+    const int slot = late_slots_[k];
+    if (!late_any_[slot]) continue;
+    const BlockCholesky::Place& place = late_places_[slot];
+    add_block(cholesky_.panels() + place.offset, place.leading_dimension, late_blocks_.data() + 36L * slot, 6,
+              false);
   }
+  return cholesky_.factor(branch);
+}
+
+void BlockMatrix::assemble(const WeightedRows& rows) {
+  for (int branch = 0; branch < branch_count(); ++branch) assemble(rows, branch);
+}
+
+bool BlockMatrix::factor() {
+  for (int branch = 0; branch < branch_count(); ++branch) {
+    if (!factor(branch)) return false;
+  }
+  return true;
 }
 
 }  // namespace cleave

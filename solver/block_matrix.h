@@ -4,9 +4,9 @@
 // row group straight into the panels of the factor, at positions found by the analysis. Rows of a 3x3 block
 // of D come along its basis (row_weights.h), so that their Gram matrix is one of scalar rows.
 //
-// Stages (see block_symbolic.h) let parts of H be assembled and factored by different threads. A group
-// between a body of an early stage and one of the last stage leaves its block of the last stage to be added
-// when that is assembled.
+// Branches (block_symbolic.h) let pieces of H be assembled and factored by different threads: assembly of all in any
+// order, then factorisation. A group between bodies of two branches is assembled with the one that is eliminated first
+// and leaves its diagonal block of the other, to be added when that is factored.
 #pragma once
 
 #include <span>
@@ -34,9 +34,14 @@ class BlockMatrix {
   void analyze_whole(const PreparedStep& step, std::span<const int> stage_of_body = {}, int stage_count = 1);
   bool rebind_whole(const PreparedStep& step);
 
-  // rows: of the whole problem, with their D. The last stage comes after the others.
-  void assemble(const WeightedRows& rows, int stage);
-  bool factor(int stage) { return cholesky_.factor(stage); }
+  // rows: of the whole problem, with their D.
+  void assemble(const WeightedRows& rows, int branch);
+  // After assembly of all branches and factorisation of the child branches. False when a pivot is not positive.
+  bool factor(int branch);
+  // Of all branches.
+  void assemble(const WeightedRows& rows);
+  bool factor();
+  int branch_count() const { return static_cast<int>(cholesky_.symbolic().branches().size()); }
 
   BlockCholesky& cholesky() { return cholesky_; }
   const BlockCholesky& cholesky() const { return cholesky_; }
@@ -44,28 +49,30 @@ class BlockMatrix {
  private:
   struct Entry {
     int group = 0;
-    int stage_a = 0, stage_b = -1;  // -1: static
+    bool has_b = false, a_is_late = false, b_is_late = false;
     BlockCholesky::Place a, b, ab;
-    int late = -1;  // slot of the Gram matrix kept for the last stage, -1 for none
+    int late = -1;  // slot of the diagonal block kept for another branch, -1 for none
   };
 
   void number(const PreparedStep& step);
-  void sort_by_stage(std::span<const int> stage_of_item, std::vector<int>& first,
-                     std::vector<int>& items) const;
+  void sort_by_branch(std::span<const int> branch_of_item, std::vector<int>& first,
+                      std::vector<int>& items) const;
   void list_edges(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
+  void place_bodies();
   void place_groups(const PreparedStep& step, std::span<const int> local_of_body,
                     std::span<const int> groups);
 
   const PreparedStep* step_ = nullptr;
   BlockCholesky cholesky_;
-  std::vector<int> bodies_, stage_of_local_;
-  std::vector<int> stage_local_first_, stage_locals_;  // places in bodies_ by stage
-  std::vector<int> identity_;                          // 0, 1, ...: at least as many as bodies and as groups
-  std::vector<Entry> entries_;                         // sorted by stage of assembly
-  std::vector<int> entry_first_;                       // (stages + 1)
-  std::vector<int> late_entries_;
-  std::vector<int> group_stage_, group_order_;  // scratch: stage of assembly of the groups, and by it
-  std::vector<double> late_gram_;               // (late entries, 12, 12)
+  std::vector<int> bodies_;
+  std::vector<int> local_branch_, branch_local_first_, branch_locals_;  // places in bodies_ by branch
+  std::vector<int> identity_;                      // 0, 1, ...: at least as many as bodies and as groups
+  std::vector<Entry> entries_;                     // sorted by branch of assembly
+  std::vector<int> entry_first_;                   // (branches + 1)
+  std::vector<BlockCholesky::Place> late_places_;  // of the slots
+  std::vector<int> late_branch_, late_first_, late_slots_;  // slots by the branch that they are kept for
+  std::vector<int> group_branch_, group_order_;  // scratch: branch of assembly of the groups, and by it
+  std::vector<double> late_blocks_;              // (slots, 6, 6)
   std::vector<char> late_any_;
   std::vector<std::pair<int, int>> edges_;
 };

@@ -18,6 +18,13 @@ long trapezoid_blocks(long width, long rows) { return width * rows - width * (wi
 // of padding by width in blocks: narrow supernodes are dominated by overhead, wide ones by arithmetic.
 double allowed_padding(int width) { return width <= 2 ? 0.6 : width <= 4 ? 0.35 : width <= 8 ? 0.15 : 0.05; }
 
+double flops_of(const Supernode& s) { return 216.0 * s.width * s.row_count * s.row_count; }
+
+// A branch has at most this share of all work, so that 16 workers have several each, but is not smaller than what takes
+// about ten microseconds.
+constexpr double kMostBranchShare = 1.0 / 64;
+constexpr double kLeastBranchFlops = 1e5;
+
 }  // namespace
 
 void BlockSymbolic::analyze(int node_count, std::span<const std::pair<int, int>> edges,
@@ -26,12 +33,14 @@ void BlockSymbolic::analyze(int node_count, std::span<const std::pair<int, int>>
   build_adjacency(edges);
   order(stage_of_node);
   find_elimination_tree();
-  postorder(stage_of_node, stage_count);
+  postorder();
   find_elimination_tree();
   find_structures();
   find_supernodes(stage_of_node, stage_count);
   list_rows();
-  list_late_rows();
+  find_branches();
+  list_branch_children();
+  list_carries();
   place_storage();
 }
 
@@ -102,30 +111,26 @@ void BlockSymbolic::find_elimination_tree() {
   }
 }
 
-// Renumbers so that every subtree is contiguous, stage by stage (a child in another stage stays there).
-void BlockSymbolic::postorder(std::span<const int> stage_of_node, int stage_count) {
-  const auto stage = [&](int p) { return stage_of_node.empty() ? 0 : stage_of_node[node_at_position_[p]]; };
-  head_.assign(node_count_ + stage_count, -1);  // first child; roots hang below node_count_ + stage
+// Renumbers so that every subtree is contiguous.
+void BlockSymbolic::postorder() {
+  head_.assign(node_count_ + 1, -1);  // first child; roots hang below node_count_
   next_.assign(node_count_, -1);
   for (int p = node_count_ - 1; p >= 0; --p) {
-    const bool root = parent_[p] == -1 || stage(parent_[p]) != stage(p);
-    const int up = root ? node_count_ + stage(p) : parent_[p];
+    const int up = parent_[p] == -1 ? node_count_ : parent_[p];
     next_[p] = head_[up];
     head_[up] = p;
   }
   mark_.clear();  // the new order, as old positions
-  for (int s = 0; s < stage_count; ++s) {
-    for (int root = head_[node_count_ + s]; root != -1; root = next_[root]) {
-      stack_.assign(1, root);
-      while (!stack_.empty()) {
-        const int p = stack_.back();
-        if (head_[p] == -1) {
-          mark_.push_back(p);
-          stack_.pop_back();
-        } else {
-          stack_.push_back(head_[p]);
-          head_[p] = next_[head_[p]];
-        }
+  for (int root = head_[node_count_]; root != -1; root = next_[root]) {
+    stack_.assign(1, root);
+    while (!stack_.empty()) {
+      const int p = stack_.back();
+      if (head_[p] == -1) {
+        mark_.push_back(p);
+        stack_.pop_back();
+      } else {
+        stack_.push_back(head_[p]);
+        head_[p] = next_[head_[p]];
       }
     }
   }
@@ -196,9 +201,6 @@ void BlockSymbolic::find_supernodes(std::span<const int> stage_of_node, int stag
     supernodes_.push_back(s);
     true_blocks_.push_back(blocks);
   }
-  stage_first_.assign(stage_count + 1, 0);
-  for (const Supernode& s : supernodes_) ++stage_first_[s.stage + 1];
-  std::partial_sum(stage_first_.begin(), stage_first_.end(), stage_first_.begin());
 }
 
 void BlockSymbolic::list_rows() {
@@ -242,39 +244,88 @@ void BlockSymbolic::list_rows() {
   }
 }
 
-// Early stages leave their contributions to the last one in arrays of just the positions they reach, so that
-// the cost of a stage follows its own size.
-void BlockSymbolic::list_late_rows() {
-  const int stages = stage_count(), begin = last_stage_position();
-  late_first_.assign(stages + 1, 0);
-  late_positions_.clear();
-  late_index_.assign(rows_.size(), -1);
-  mark_.assign(node_count_, -1);
-  for (int stage = 0; stage + 1 < stages; ++stage) {
-    const int first = late_first_[stage] = static_cast<int>(late_positions_.size());
-    const auto for_late_rows = [&](auto visit) {
-      for (int i = stage_first_[stage]; i < stage_first_[stage + 1]; ++i) {
-        const Supernode& s = supernodes_[i];
-        for (int k = s.first_row + s.width; k < s.first_row + s.row_count; ++k) {
-          if (rows_[k] >= begin) visit(k);
-        }
-      }
-    };
-    for_late_rows([&](int k) {
-      if (mark_[rows_[k]] >= first) return;
-      mark_[rows_[k]] = first;
-      late_positions_.push_back(rows_[k]);
-    });
-    std::sort(late_positions_.begin() + first, late_positions_.end());
-    for (int k = first; k < static_cast<int>(late_positions_.size()); ++k) mark_[late_positions_[k]] = k;
-    for_late_rows([&](int k) { late_index_[k] = mark_[rows_[k]] - first; });
+// A subtree is one branch where it is of one stage and has so little work that more workers than anybody has would
+// still get enough of them; what is above goes supernode by supernode.
+void BlockSymbolic::find_branches() {
+  const int count = static_cast<int>(supernodes_.size());
+  subtree_flops_.assign(count, 0.0);
+  std::vector<int>& one_stage = mark_;
+  one_stage.assign(count, 1);
+  double total = 0;
+  for (int i = 0; i < count; ++i) {
+    const Supernode& s = supernodes_[i];
+    const double flops = flops_of(s);
+    total += flops;
+    subtree_flops_[i] += flops;
+    if (s.parent < 0) continue;
+    subtree_flops_[s.parent] += subtree_flops_[i];
+    if (!one_stage[i] || supernodes_[s.parent].stage != s.stage) one_stage[s.parent] = 0;
   }
-  late_first_[stages - 1] = late_first_[stages] = static_cast<int>(late_positions_.size());
+  const double most = std::max(kLeastBranchFlops, kMostBranchShare * total);
+  branches_.clear();
+  for (int i = count - 1; i >= 0;) {
+    const Supernode& s = supernodes_[i];
+    Branch branch;
+    branch.last = i;
+    branch.first = one_stage[i] && subtree_flops_[i] <= most ? s.first_descendant : i;
+    branch.stage = s.stage;
+    branch.end_position = s.first_position + s.width;
+    branches_.push_back(branch);
+    i = branch.first - 1;
+  }
+  std::ranges::reverse(branches_);
+  double before = 0;
+  for (std::size_t b = 0; b < branches_.size(); ++b) {
+    Branch& branch = branches_[b];
+    branch.place = std::min(before / std::max(total, 1.0), 1 - 1e-9);
+    for (int i = branch.first; i <= branch.last; ++i) {
+      before += flops_of(supernodes_[i]);
+      supernodes_[i].branch = static_cast<int>(b);
+      branch.most_rows_below = std::max(branch.most_rows_below, supernodes_[i].rows_below());
+    }
+  }
 }
 
-// Update matrices live on two stacks per stage, by parity of the depth in the tree: when a supernode is
+void BlockSymbolic::list_branch_children() {
+  const int count = static_cast<int>(branches_.size());
+  branch_child_first_.assign(count + 1, 0);
+  for (Branch& branch : branches_) {
+    const int up = supernodes_[branch.last].parent;
+    if (up < 0) continue;
+    branch.parent = supernodes_[up].branch;
+    ++branch_child_first_[branch.parent + 1];
+  }
+  std::partial_sum(branch_child_first_.begin(), branch_child_first_.end(), branch_child_first_.begin());
+  branch_children_.resize(branch_child_first_[count]);
+  stack_.assign(branch_child_first_.begin(), branch_child_first_.end());
+  for (int b = 0; b < count; ++b) {
+    if (branches_[b].parent >= 0) branch_children_[stack_[branches_[b].parent]++] = b;
+  }
+}
+
+// The rows of a supernode above its branch are among the rows below the branch's root, and both lists ascend.
+void BlockSymbolic::list_carries() {
+  carry_index_.assign(rows_.size(), -1);
+  carry_size_ = 0;
+  for (Branch& branch : branches_) {
+    const Supernode& root = supernodes_[branch.last];
+    const int below = root.first_row + root.width;
+    branch.carry_offset = carry_size_;
+    carry_size_ += 6L * root.rows_below();
+    for (int i = branch.first; i <= branch.last; ++i) {
+      const Supernode& s = supernodes_[i];
+      for (int k = s.first_row + s.width, q = 0; k < s.first_row + s.row_count; ++k) {
+        if (rows_[k] < branch.end_position) continue;
+        while (rows_[below + q] != rows_[k]) ++q;
+        carry_index_[k] = q;
+      }
+    }
+  }
+}
+
+// Update matrices live on two stacks per branch, by parity of the depth in the tree: when a supernode is
 // eliminated in postorder, its children's updates are on top of the other stack, so both stacks stay
-// last-in-first-out and the memory in use stays small and warm.
+// last-in-first-out and the memory in use stays small and warm. The root's update stays for the parent branch.
 void BlockSymbolic::place_storage() {
   const int count = static_cast<int>(supernodes_.size());
   std::vector<int>& depth = mark_;
@@ -284,22 +335,22 @@ void BlockSymbolic::place_storage() {
   }
   factor_size_ = 0;
   update_size_ = 0;
-  for (int stage = 0; stage + 1 < static_cast<int>(stage_first_.size()); ++stage) {
+  for (const Branch& branch : branches_) {
     std::array<long, 2> top{}, peak{};
-    for (int i = stage_first_[stage]; i < stage_first_[stage + 1]; ++i) {
+    for (int i = branch.first; i <= branch.last; ++i) {
       Supernode& s = supernodes_[i];
       s.panel_offset = factor_size_;
       factor_size_ += 36L * s.width * s.row_count;
       for (int child : children(i)) {
         const Supernode& below = supernodes_[child];
-        if (below.stage == stage) top[1 - depth[i] % 2] -= 36L * below.rows_below() * below.rows_below();
+        if (below.branch == s.branch) top[1 - depth[i] % 2] -= 36L * below.rows_below() * below.rows_below();
       }
       long& own = top[depth[i] % 2];
       s.update_offset = own;
       own += 36L * s.rows_below() * s.rows_below();
       peak[depth[i] % 2] = std::max(peak[depth[i] % 2], own);
     }
-    for (int i = stage_first_[stage]; i < stage_first_[stage + 1]; ++i) {
+    for (int i = branch.first; i <= branch.last; ++i) {
       supernodes_[i].update_offset += update_size_ + (depth[i] % 2 == 1 ? peak[0] : 0);
     }
     update_size_ += peak[0] + peak[1];

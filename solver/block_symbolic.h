@@ -6,9 +6,13 @@
 // joined into supernodes, so that the numeric factorisation runs on dense panels. Positions are places in the
 // elimination order; all indices below are in blocks.
 //
-// Stages: nodes may carry a stage number; all nodes of a lower stage are eliminated before those of the last
-// stage, and supernodes never span two stages. Nodes of different stages below the last must not be adjacent:
-// those stages are then independent subtrees that may be factored in parallel.
+// Stages: nodes may carry a stage number; nodes of a lower stage are eliminated before those of a higher one, and
+// supernodes never span two. Where the stages are parts and the cut between them (a vertex cover), or the nodes of a
+// tree of parts, their numbers are the order from the leaves to the root, and the elimination tree is that tree.
+//
+// Branches: the work is dealt out in branches of the elimination tree, each one task: a subtree of little work, or a
+// single supernode above those. A branch needs its child branches first and is independent of all others. Branches
+// depend on the pattern alone, so results do not depend on who works on them.
 #pragma once
 
 #include <span>
@@ -24,10 +28,24 @@ struct Supernode {
   int row_count = 0;
   int parent = -1;  // supernode that takes the update matrix; -1 for a root
   int stage = 0;
+  int branch = 0;
   int first_descendant = 0;  // the subtree is supernodes first_descendant .. this one (postorder)
   long panel_offset = 0;     // in doubles, into the factor
   long update_offset = 0;    // in doubles, into the update stack
   int rows_below() const { return row_count - width; }
+};
+
+// Supernodes first .. last of one stage; `last` is the root of the subtree. What its columns add to positions above it
+// goes to rows below the root's own columns only.
+struct Branch {
+  int first = 0, last = 0;
+  int parent = -1;  // branch that the root's parent is in
+  int stage = 0;
+  int end_position = 0;  // one past the root's columns
+  double place =
+      0;  // share of all work that comes before it, in [0, 1): branches near each other share a subtree
+  int most_rows_below = 0;  // of its supernodes, in blocks
+  long carry_offset = 0;    // in doubles: 6 for each row below the root's columns
 };
 
 class BlockSymbolic {
@@ -50,37 +68,34 @@ class BlockSymbolic {
     return std::span(children_).subspan(child_first_[supernode],
                                         child_first_[supernode + 1] - child_first_[supernode]);
   }
-  // Supernodes of one stage: a contiguous range [first, last).
-  std::pair<int, int> stage_range(int stage) const { return {stage_first_[stage], stage_first_[stage + 1]}; }
-  // First position of the last stage; node_count() when that stage is empty.
-  int last_stage_position() const {
-    const int first = stage_first_[stage_first_.size() - 2];
-    return first == static_cast<int>(supernodes_.size()) ? node_count_ : supernodes_[first].first_position;
+  // Ascending by root, so that children come before their parent.
+  std::span<const Branch> branches() const { return branches_; }
+  std::span<const int> child_branches(int branch) const {
+    return std::span(branch_children_)
+        .subspan(branch_child_first_[branch], branch_child_first_[branch + 1] - branch_child_first_[branch]);
   }
-  // Positions of the last stage that supernodes of an earlier one have rows at, ascending; and for each entry
-  // of rows() there, its index among those of its stage.
-  std::span<const int> late_positions(int stage) const {
-    return std::span(late_positions_)
-        .subspan(late_first_[stage], late_first_[stage + 1] - late_first_[stage]);
-  }
-  std::span<const int> late_index() const { return late_index_; }
-  int stage_count() const { return static_cast<int>(stage_first_.size()) - 1; }
+  // For each entry of rows() at a position above its branch: its index among the rows below the branch's root; -1 for
+  // others.
+  std::span<const int> carry_index() const { return carry_index_; }
+  int stage_count() const { return static_cast<int>(stage_flops_.size()); }
 
   long factor_size() const { return factor_size_; }  // doubles of all panels
   long update_size() const { return update_size_; }  // doubles of the update stacks
-  double factor_flops(int stage) const {
-    return stage_flops_[stage];
-  }  // sum of squared column counts, no padding
+  long carry_size() const { return carry_size_; }    // doubles of all carries
+  // Sum of squared column counts, no padding.
+  double factor_flops(int stage) const { return stage_flops_[stage]; }
 
  private:
   void build_adjacency(std::span<const std::pair<int, int>> edges);
   void order(std::span<const int> stage_of_node);
   void find_elimination_tree();
-  void postorder(std::span<const int> stage_of_node, int stage_count);
+  void postorder();
   void find_structures();
   void find_supernodes(std::span<const int> stage_of_node, int stage_count);
   void list_rows();
-  void list_late_rows();
+  void find_branches();
+  void list_branch_children();
+  void list_carries();
   void place_storage();
 
   int node_count_ = 0;
@@ -91,12 +106,14 @@ class BlockSymbolic {
   std::vector<Supernode> supernodes_;
   std::vector<int> supernode_at_position_;
   std::vector<int> rows_, row_in_parent_;
-  std::vector<int> late_first_, late_positions_, late_index_;
-  std::vector<int> child_first_, children_, stage_first_;
+  std::vector<Branch> branches_;
+  std::vector<int> branch_child_first_, branch_children_, carry_index_;
+  std::vector<int> child_first_, children_;
   std::vector<double> stage_flops_;
-  long factor_size_ = 0, update_size_ = 0;
+  long factor_size_ = 0, update_size_ = 0, carry_size_ = 0;
   std::vector<int> mark_, head_, next_, stack_;  // scratch
   std::vector<long> true_blocks_;                // scratch: blocks of a supernode that are not padding
+  std::vector<double> subtree_flops_;            // scratch: by supernode, padding included
 };
 
 }  // namespace cleave

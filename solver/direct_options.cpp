@@ -21,12 +21,15 @@ const Parameter& max_iterations() {
 }
 
 const Parameter& predictor_sweeps() {
-  static const Parameter parameter{.name = "predictor-sweeps",
-                                   .kind = Kind::integer,
-                                   .default_value = "40",
-                                   .range = {0, kInfinity},
-                                   .help = "Gauss-Seidel sweeps that the strategy pivot starts from",
-                                   .source = "solver/strategies/pivot.cpp"};
+  static const Parameter parameter{
+      .name = "predictor-sweeps",
+      .kind = Kind::integer,
+      .default_value = "80",
+      .range = {0, kInfinity},
+      .help =
+          "most Gauss-Seidel sweeps that the strategy pivot starts from; fewer where "
+          "the active set settles",
+      .source = "solver/strategies/pivot.cpp"};
   return parameter;
 }
 
@@ -46,6 +49,19 @@ const Parameter& sweeps() {
                                    .range = {0, kInfinity},
                                    .help = "Gauss-Seidel sweeps of pgs",
                                    .source = "Catto 2005"};
+  return parameter;
+}
+
+const Parameter& arity() {
+  static const Parameter parameter{
+      .name = "arity",
+      .kind = Kind::integer,
+      .default_value = "2",
+      .range = {2, 64},
+      .help =
+          "parts that a set of bodies is split into, again and again until each has "
+          "at most max-bodies",
+      .source = "Karypis and Kumar 1998"};
   return parameter;
 }
 

@@ -75,12 +75,11 @@ class DirectSolver : public StepSolver {
 
  private:
   std::string refuse_set(const StepProblem& problem) override;
-  SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
-                        Solution& solution) override;
-  void analyze(const StepProblem& problem, std::span<const int> part_of_body);
+  SolveSummary do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) override;
+  void analyze(const StepProblem& problem, const Parts& parts);
   bool attempt(SolveSummary& summary, double delta, std::span<const double> warm_impulse);
   bool run_attempts(SolveSummary& summary, const StepProblem& problem, std::span<const double> warm_impulse);
-  bool reuse_analysis(const StepProblem& problem, std::span<const int> part_of_body);
+  bool reuse_analysis(const StepProblem& problem, const Parts& parts);
   bool run_chain(SolveSummary& summary, std::span<const double> warm_impulse);
   bool run_proximal(SolveSummary& summary);
   Strategy& strategy(std::string_view name);
@@ -94,7 +93,7 @@ class DirectSolver : public StepSolver {
   SolveState state_;
   std::vector<Link> links_;  // strategies made so far
   bool analyzed_ = false;
-  std::vector<int> analyzed_body_, analyzed_part_;
+  std::vector<int> analyzed_body_, analyzed_part_, analyzed_parent_;
   ProximalStep proximal_;
   Best chain_best_, proximal_best_, attempt_best_;
 };
@@ -119,21 +118,23 @@ std::string DirectSolver::refuse_set(const StepProblem& problem) {
 }
 
 // Rows between the same bodies, or at least between pairs that the analysed pattern has a place for.
-bool DirectSolver::reuse_analysis(const StepProblem& problem, std::span<const int> part_of_body) {
-  if (!std::ranges::equal(part_of_body, analyzed_part_)) return false;
-  return problem.row_body == analyzed_body_ || kernel_->rebind(step_, part_of_body, state_.tasks);
+bool DirectSolver::reuse_analysis(const StepProblem& problem, const Parts& parts) {
+  if (!std::ranges::equal(parts.part_of_body, analyzed_part_)) return false;
+  if (!std::ranges::equal(parts.parent_of_part, analyzed_parent_)) return false;
+  return problem.row_body == analyzed_body_ || kernel_->rebind(step_, parts, state_.tasks);
 }
 
-void DirectSolver::analyze(const StepProblem& problem, std::span<const int> part_of_body) {
+void DirectSolver::analyze(const StepProblem& problem, const Parts& parts) {
   // Not analysed until all of it is done: there may be no memory half-way.
   const bool analyzed = std::exchange(analyzed_, false);
-  const bool reused = analyzed && state_.options.reuse_analysis && reuse_analysis(problem, part_of_body);
+  const bool reused = analyzed && state_.options.reuse_analysis && reuse_analysis(problem, parts);
   {
     StageTimer timer(clock_, Stage::analyze);
     analyzed_body_ = problem.row_body;
-    analyzed_part_.assign(part_of_body.begin(), part_of_body.end());
+    analyzed_part_.assign(parts.part_of_body.begin(), parts.part_of_body.end());
+    analyzed_parent_.assign(parts.parent_of_part.begin(), parts.parent_of_part.end());
   }
-  if (!reused) kernel_->analyze(step_, part_of_body, state_.tasks);
+  if (!reused) kernel_->analyze(step_, parts, state_.tasks);
   analyzed_ = true;
 }
 
@@ -189,7 +190,7 @@ bool DirectSolver::attempt(SolveSummary& summary, double delta, std::span<const 
     StageTimer timer(clock_, Stage::predict);
     if (delta > 0) {
       proximal_.begin(step_, warm_impulse, delta);
-      step_.prepare(proximal_.problem());
+      step_.prepare(proximal_.problem(), &state_.tasks);
     }
     state_.begin(step_, *kernel_, summary, warm_impulse);
   }
@@ -207,7 +208,7 @@ bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& proble
     if (delta > 0 && stiffest >= delta) continue;
     if (attempts++ > 0) ++summary.fallbacks;
     if (attempt(summary, delta, warm_impulse)) return true;
-    if (delta > 0) step_.prepare(problem);
+    if (delta > 0) step_.prepare(problem, &state_.tasks);
     state_.update_velocity();
     attempt_best_.offer(state_);
   }
@@ -215,17 +216,16 @@ bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& proble
   return false;
 }
 
-SolveSummary DirectSolver::do_solve(const StepProblem& problem, std::span<const int> part_of_body,
-                                    Solution& solution) {
+SolveSummary DirectSolver::do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) {
   SolveSummary summary;
   summary.kernel = kernel_name_;
   clock_.start();
   {
     StageTimer timer(clock_, Stage::analyze);
-    step_.prepare(problem);
+    step_.prepare(problem, &state_.tasks);
   }
-  analyze(problem, part_of_body);
-  state_.part_of_body = part_of_body;
+  analyze(problem, parts);
+  state_.part_of_body = parts.part_of_body;
   step_.set().to_axes(solution.impulse);
   const bool solved = run_attempts(summary, problem, solution.impulse);
   step_.set().project(state_.impulse);

@@ -27,14 +27,31 @@ class ParallelTasks {
   template <class Task>
   void run(Stage stage, int count, const Task& task) {
     StageTimer timer(clock_, stage);
+    run(count, task);
+  }
+
+  // In whatever stage is being timed.
+  template <class Task>
+  void run(int count, const Task& task) {
     if (team_.threads() == 1) {
       run_timed(count, task);
+      clock_.add_tasks(task_ms_);
     } else if (count == 1) {
       task(0);
     } else {
-      team_.run(
-          count, [](void* context, int index) { (*static_cast<const Task*>(context))(index); },
-          const_cast<void*>(static_cast<const void*>(&task)));
+      team_.run(count, call<Task>, context_of(task));
+    }
+  }
+
+  // The tasks of a graph, which must stay as it is until the solve has ended.
+  template <class Task>
+  void run(Stage stage, const TaskGraph& graph, const Task& task) {
+    StageTimer timer(clock_, stage);
+    if (team_.threads() > 1 || team_.shuffles()) {
+      team_.run(graph, call<Task>, context_of(task));
+    } else {
+      run_timed(graph.task_count(), task);
+      clock_.add_graph(graph, task_ms_);
     }
   }
 
@@ -43,6 +60,15 @@ class ParallelTasks {
   const std::atomic<bool>* stop() const { return stop_; }  // of the solve
 
  private:
+  template <class Task>
+  static void call(void* context, int index) {
+    (*static_cast<const Task*>(context))(index);
+  }
+  template <class Task>
+  static void* context_of(const Task& task) {
+    return const_cast<void*>(static_cast<const void*>(&task));
+  }
+
   template <class Task>
   void run_timed(int count, const Task& task) {
     task_ms_.resize(count);
@@ -53,7 +79,6 @@ class ParallelTasks {
       task_ms_[i] = std::chrono::duration<double, std::milli>(end - begin).count();
       begin = end;
     }
-    clock_.add_tasks(task_ms_);
   }
 
   StageClock& clock_;

@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
 namespace cleave {
 namespace {
@@ -11,37 +13,48 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
+constexpr int kChunkRows = 384, kChunkBodies = 48;
+
+// Ranges of whole items with at least `least` of what size_of counts, but for the last.
+template <class Size>
+void cut_into_chunks(int count, int least, const Size& size_of, std::vector<Chunk>& chunks) {
+  chunks.clear();
+  int size = 0;
+  for (int i = 0, first = 0; i < count; ++i) {
+    size += size_of(i);
+    if (size < least && i + 1 < count) continue;
+    chunks.push_back({first, i + 1});
+    first = i + 1;
+    size = 0;
+  }
+}
+
 }  // namespace
 
-void PreparedStep::prepare(const StepProblem& problem) {
+template <class Task>
+void PreparedStep::run(std::span<const Chunk> chunks, const Task& task) const {
+  const int count = static_cast<int>(chunks.size());
+  if (tasks_ != nullptr && count > 1) return tasks_->run(count, [&](int i) { task(chunks[i]); });
+  for (const Chunk& chunk : chunks) task(chunk);
+}
+
+void PreparedStep::prepare(const StepProblem& problem, ParallelTasks* tasks) {
   problem_ = &problem;
+  tasks_ = tasks;
   const int n = body_count(), m = row_count();
-  groups_.clear();
-  for (int r = 0; r < m; ++r) {
-    const int a = problem.row_body[2 * r], b = problem.row_body[2 * r + 1];
-    if (groups_.empty() || groups_.back().body_a != a || groups_.back().body_b != b)
-      groups_.push_back({a, b, r, 0});
-    ++groups_.back().row_count;
-  }
+  list_groups();
+  list_sides();
+  cut_into_chunks(
+      static_cast<int>(groups_.size()), kChunkRows, [&](int g) { return groups_[g].row_count; },
+      group_chunks_);
+  cut_into_chunks(
+      n, kChunkBodies, [](int) { return 1; }, body_chunks_);
+  group_sums_.resize(12 * groups_.size());
   inverse_mass_.resize(36 * static_cast<std::size_t>(n));
-  for (int i = 0; i < n; ++i) {
-    const Eigen::Map<const Matrix6> mass(problem.mass.data() + 36 * i);
-    Eigen::Map<Matrix6>(inverse_mass_.data() + 36 * i) = mass.llt().solve(Matrix6::Identity());
-  }
-  mass_jacobian_.assign(12 * static_cast<std::size_t>(m), 0.0);
+  mass_jacobian_.resize(12 * static_cast<std::size_t>(m));
   diagonal_.resize(m);
-  for (int r = 0; r < m; ++r) {
-    double d = problem.compliance[r];
-    for (int side = 0; side < 2; ++side) {
-      const int body = problem.row_body[2 * r + side];
-      if (body < 0) continue;
-      const Eigen::Map<const Vector6> j(problem.jacobian.data() + 12 * r + 6 * side);
-      Eigen::Map<Vector6> mj(mass_jacobian_.data() + 12 * r + 6 * side);
-      mj = Eigen::Map<const Matrix6>(inverse_mass_.data() + 36 * body) * j;
-      d += j.dot(mj);
-    }
-    diagonal_[r] = d > 0 ? d : 1;  // a row of zeros constrains nothing
-  }
+  run(body_chunks_, [this](const Chunk& chunk) { prepare_bodies(chunk); });
+  run(group_chunks_, [this](const Chunk& chunk) { prepare_rows(chunk); });
   set_.bind(problem);
   turn_diagonal();
   least_relative_compliance_ = std::numeric_limits<double>::infinity();
@@ -50,6 +63,58 @@ void PreparedStep::prepare(const StepProblem& problem) {
   }
   velocity_scale_ = 1;
   for (double v : problem.free_velocity) velocity_scale_ = std::max(velocity_scale_, std::abs(v));
+}
+
+void PreparedStep::list_groups() {
+  groups_.clear();
+  for (int r = 0; r < row_count(); ++r) {
+    const int a = problem_->row_body[2 * r], b = problem_->row_body[2 * r + 1];
+    if (groups_.empty() || groups_.back().body_a != a || groups_.back().body_b != b)
+      groups_.push_back({a, b, r, 0});
+    ++groups_.back().row_count;
+  }
+}
+
+void PreparedStep::list_sides() {
+  side_first_.assign(body_count() + 1, 0);
+  for (const RowGroup& g : groups_) {
+    ++side_first_[g.body_a + 1];
+    if (g.body_b >= 0) ++side_first_[g.body_b + 1];
+  }
+  std::partial_sum(side_first_.begin(), side_first_.end(), side_first_.begin());
+  sides_.resize(side_first_.back());
+  for (std::size_t g = 0; g < groups_.size(); ++g) {
+    sides_[side_first_[groups_[g].body_a]++] = static_cast<int>(2 * g);
+    if (groups_[g].body_b >= 0) sides_[side_first_[groups_[g].body_b]++] = static_cast<int>(2 * g + 1);
+  }
+  for (int body = body_count(); body > 0; --body) side_first_[body] = side_first_[body - 1];
+  side_first_[0] = 0;
+}
+
+void PreparedStep::prepare_bodies(const Chunk& chunk) {
+  for (int i = chunk.first; i < chunk.last; ++i) {
+    const Eigen::Map<const Matrix6> mass(problem_->mass.data() + 36L * i);
+    Eigen::Map<Matrix6>(inverse_mass_.data() + 36L * i) = mass.llt().solve(Matrix6::Identity());
+  }
+}
+
+void PreparedStep::prepare_rows(const Chunk& chunk) {
+  const auto [first, last] = rows_of(chunk);
+  for (int r = first; r < last; ++r) {
+    double d = problem_->compliance[r];
+    for (int side = 0; side < 2; ++side) {
+      const int body = problem_->row_body[2 * r + side];
+      Eigen::Map<Vector6> mj(mass_jacobian_.data() + 12L * r + 6 * side);
+      if (body < 0) {
+        mj.setZero();
+        continue;
+      }
+      const Eigen::Map<const Vector6> j(problem_->jacobian.data() + 12L * r + 6 * side);
+      mj = Eigen::Map<const Matrix6>(inverse_mass_.data() + 36L * body) * j;
+      d += j.dot(mj);
+    }
+    diagonal_[r] = d > 0 ? d : 1;  // a row of zeros constrains nothing
+  }
 }
 
 // On the rows of a turned box, d_k = f^T (J M^-1 J^T + C) f along each axis f.
@@ -73,26 +138,51 @@ void PreparedStep::turn_diagonal() {
 }
 
 void PreparedStep::velocity(std::span<const double> impulse, std::span<double> v) const {
-  std::copy(problem_->free_velocity.begin(), problem_->free_velocity.end(), v.begin());
-  for (const RowGroup& g : groups_) {
-    double a[6] = {}, b[6] = {};
-    for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
-      const double* mj = mass_jacobian_.data() + 12 * r;
-      for (int c = 0; c < 6; ++c) a[c] += mj[c] * impulse[r], b[c] += mj[6 + c] * impulse[r];
+  add_transpose(mass_jacobian_.data(), impulse, problem_->free_velocity, v);
+}
+
+void PreparedStep::add_jacobian_transpose(std::span<const double> x, std::span<double> out) const {
+  add_transpose(problem_->jacobian.data(), x, out, out);
+}
+
+// out (n, 6) = base + sum over the rows r of rows_r^T x_r: first the sum of each group, then of each body.
+void PreparedStep::add_transpose(const double* rows, std::span<const double> x, std::span<const double> base,
+                                 std::span<double> out) const {
+  run(group_chunks_, [&](const Chunk& chunk) {
+    for (int g = chunk.first; g < chunk.last; ++g) {
+      double sum[12] = {};
+      for (int r = groups_[g].first_row; r < groups_[g].first_row + groups_[g].row_count; ++r) {
+        const double* row = rows + 12L * r;
+        for (int c = 0; c < 12; ++c) sum[c] += row[c] * x[r];
+      }
+      std::copy_n(sum, 12, group_sums_.data() + 12L * g);
     }
-    for (int c = 0; c < 6; ++c) v[6 * g.body_a + c] += a[c];
-    if (g.body_b < 0) continue;
-    for (int c = 0; c < 6; ++c) v[6 * g.body_b + c] += b[c];
-  }
+  });
+  run(body_chunks_, [&](const Chunk& chunk) {
+    for (int body = chunk.first; body < chunk.last; ++body) {
+      double total[6];
+      std::copy_n(base.data() + 6L * body, 6, total);
+      for (const int side : sides_of_body(body)) {
+        for (int c = 0; c < 6; ++c) total[c] += group_sums_[6L * side + c];
+      }
+      std::copy_n(total, 6, out.data() + 6L * body);
+    }
+  });
 }
 
 void PreparedStep::jacobian_times(std::span<const double> v, std::span<double> out) const {
-  for (const RowGroup& g : groups_) {
+  run(group_chunks_, [&](const Chunk& chunk) { jacobian_times(chunk, v, out); });
+}
+
+void PreparedStep::jacobian_times(const Chunk& chunk, std::span<const double> v,
+                                  std::span<double> out) const {
+  for (int i = chunk.first; i < chunk.last; ++i) {
+    const RowGroup& g = groups_[i];
     double both[12] = {};
-    std::copy_n(v.data() + 6 * g.body_a, 6, both);
-    if (g.body_b >= 0) std::copy_n(v.data() + 6 * g.body_b, 6, both + 6);
+    std::copy_n(v.data() + 6L * g.body_a, 6, both);
+    if (g.body_b >= 0) std::copy_n(v.data() + 6L * g.body_b, 6, both + 6);
     for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
-      const double* j = problem_->jacobian.data() + 12 * r;
+      const double* j = problem_->jacobian.data() + 12L * r;
       double sum[4] = {};
       for (int c = 0; c < 12; c += 4) {
         for (int k = 0; k < 4; ++k) sum[k] += j[c + k] * both[c + k];
@@ -102,23 +192,13 @@ void PreparedStep::jacobian_times(std::span<const double> v, std::span<double> o
   }
 }
 
-void PreparedStep::add_jacobian_transpose(std::span<const double> x, std::span<double> out) const {
-  for (const RowGroup& g : groups_) {
-    double sum[12] = {};
-    for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
-      const double* j = problem_->jacobian.data() + 12 * r;
-      for (int c = 0; c < 12; ++c) sum[c] += j[c] * x[r];
-    }
-    for (int c = 0; c < 6; ++c) out[6 * g.body_a + c] += sum[c];
-    if (g.body_b < 0) continue;
-    for (int c = 0; c < 6; ++c) out[6 * g.body_b + c] += sum[6 + c];
-  }
-}
-
 void PreparedStep::slack(std::span<const double> v, std::span<const double> impulse,
                          std::span<double> w) const {
-  jacobian_times(v, w);
-  for (int r = 0; r < row_count(); ++r) w[r] += problem_->compliance[r] * impulse[r] - problem_->rhs[r];
+  run(group_chunks_, [&](const Chunk& chunk) {
+    jacobian_times(chunk, v, w);
+    const auto [first, last] = rows_of(chunk);
+    for (int r = first; r < last; ++r) w[r] += problem_->compliance[r] * impulse[r] - problem_->rhs[r];
+  });
 }
 
 }  // namespace cleave

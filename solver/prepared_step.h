@@ -3,9 +3,11 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "solver/impulse_set.h"
+#include "solver/parallel_tasks.h"
 #include "solver/step_problem.h"
 
 namespace cleave {
@@ -18,15 +20,33 @@ struct RowGroup {
   int row_count = 0;
 };
 
+// Rows and bodies that one task works on: about as many rows or bodies as take some microseconds. Chunks depend on the
+// problem alone.
+struct Chunk {
+  int first = 0, last = 0;  // groups, or bodies: first .. last - 1
+};
+
 class PreparedStep {
  public:
-  // problem must outlive this object. Buffers are kept from one problem to the next.
-  void prepare(const StepProblem& problem);
+  // problem must outlive this object. Buffers are kept from one problem to the next. tasks: who works on this and on the
+  // products below, until the next call; nullptr: the calling thread alone, with the same bytes.
+  void prepare(const StepProblem& problem, ParallelTasks* tasks = nullptr);
 
   const StepProblem& problem() const { return *problem_; }
   int body_count() const { return problem_->body_count(); }
   int row_count() const { return problem_->row_count(); }
   std::span<const RowGroup> groups() const { return groups_; }
+  // Groups a body is in, ascending: 2 * group + side, side 0 where it is body_a.
+  std::span<const int> sides_of_body(int body) const {
+    return std::span(sides_).subspan(side_first_[body], side_first_[body + 1] - side_first_[body]);
+  }
+  std::span<const Chunk> group_chunks() const { return group_chunks_; }
+  std::span<const Chunk> body_chunks() const { return body_chunks_; }
+  // The rows of a chunk of groups: first .. last - 1.
+  std::pair<int, int> rows_of(const Chunk& chunk) const {
+    const RowGroup& end = groups_[chunk.last - 1];
+    return {groups_[chunk.first].first_row, end.first_row + end.row_count};
+  }
   std::span<const double> inverse_mass() const { return inverse_mass_; }  // (n, 6, 6)
   // (m, 12) rows of M^-1 J^T, laid out as the Jacobian.
   std::span<const double> mass_jacobian() const { return mass_jacobian_; }
@@ -41,8 +61,9 @@ class PreparedStep {
 
   // v (n, 6) = v0 + M^-1 J^T lambda
   void velocity(std::span<const double> impulse, std::span<double> v) const;
-  // out (m) = J v
+  // out (m) = J v, of all rows or those of a chunk of groups.
   void jacobian_times(std::span<const double> v, std::span<double> out) const;
+  void jacobian_times(const Chunk& chunk, std::span<const double> v, std::span<double> out) const;
   // out (n, 6) += J^T x
   void add_jacobian_transpose(std::span<const double> x, std::span<double> out) const;
   // w (m) = J v + C lambda - b
@@ -53,11 +74,23 @@ class PreparedStep {
   }
 
  private:
+  void list_groups();
+  void list_sides();
+  void prepare_bodies(const Chunk& chunk);
+  void prepare_rows(const Chunk& chunk);
   void turn_diagonal();
+  template <class Task>
+  void run(std::span<const Chunk> chunks, const Task& task) const;
+  void add_transpose(const double* rows, std::span<const double> x, std::span<const double> base,
+                     std::span<double> out) const;
 
   const StepProblem* problem_ = nullptr;
   ImpulseSet set_;
+  ParallelTasks* tasks_ = nullptr;
   std::vector<RowGroup> groups_;
+  std::vector<int> side_first_, sides_;
+  std::vector<Chunk> group_chunks_, body_chunks_;
+  mutable std::vector<double> group_sums_;  // scratch: (groups, 12)
   std::vector<double> inverse_mass_, mass_jacobian_, diagonal_;
   double velocity_scale_ = 1, least_relative_compliance_ = 0;
 };

@@ -26,6 +26,7 @@ struct StrategyRow : AlgorithmEntry {
 
 struct KernelRow : AlgorithmEntry {
   bool splits;           // uses the partition
+  bool nests;            // and wants it as a tree, split by the parameter arity
   const char* resolved;  // what runs under this name
   std::unique_ptr<Kernel> (*make)(const Settings& settings);
 };

@@ -82,24 +82,39 @@ AxisRow axis_of_row(const StepProblem& problem, std::span<const double> impulse,
   return axis;
 }
 
-// d | lambda - clamp(lambda - w / d, lo, hi) | of one row, as | clamp(w, d (lambda - hi), d (lambda - lo)) |:
-// the same number without the division, whose cancellation would cost eps |lambda| d. A row that nothing can
-// move (d = 0) is measured with d = 1, which keeps the residual zero exactly at solutions.
-double find_row_residual(const StepProblem& problem, const std::vector<BodyState>& bodies, int row,
-                         const AxisRow& axis) {
-  Real slack = problem.compliance[row] * axis.impulse - axis.rhs;
+// d = (J M^-1 J^T + C)_rr. A row that nothing can move (d = 0) is measured with d = 1, which keeps the residual zero
+// exactly at solutions.
+Real find_diagonal(const StepProblem& problem, const std::vector<BodyState>& bodies, int row,
+                   const AxisRow& axis) {
   Real diagonal = problem.compliance[row];
   for (int side = 0; side < 2; ++side) {
     const int body = problem.row_body[2 * row + side];
-    if (body < 0) continue;
-    const Vector6& block = axis.jacobian[side];
-    slack += block.dot(bodies[body].velocity);
-    diagonal += block.dot(bodies[body].mass_factor.solve(block));
+    if (body >= 0) diagonal += axis.jacobian[side].dot(bodies[body].mass_factor.solve(axis.jacobian[side]));
   }
-  if (diagonal == 0) diagonal = 1;
-  const Real most = diagonal * (axis.impulse - problem.lower[row]);
-  const Real least = diagonal * (axis.impulse - problem.upper[row]);
-  return static_cast<double>(std::abs(std::clamp(slack, least, most)));
+  return diagonal == 0 ? 1 : diagonal;
+}
+
+// d | lambda - clamp(lambda - w / d, lo, hi) | of one row, as | clamp(w, d (lambda - hi), d (lambda - lo)) |:
+// the same number without the division, whose cancellation would cost eps |lambda| d. d takes longer than all the rest,
+// and most rows do without: one at a bound whose w pushes it there has no residual, and as d >= C, a w between
+// C (lambda - hi) and C (lambda - lo) is not clamped.
+double find_row_residual(const StepProblem& problem, const std::vector<BodyState>& bodies, int row,
+                         const AxisRow& axis) {
+  const Real compliance = problem.compliance[row];
+  Real slack = compliance * axis.impulse - axis.rhs;
+  for (int side = 0; side < 2; ++side) {
+    const int body = problem.row_body[2 * row + side];
+    if (body >= 0) slack += axis.jacobian[side].dot(bodies[body].velocity);
+  }
+  const Real above_lower = axis.impulse - problem.lower[row], above_upper = axis.impulse - problem.upper[row];
+  if ((above_lower == 0 && slack >= 0 && above_upper <= 0) ||
+      (above_upper == 0 && slack <= 0 && above_lower >= 0))
+    return 0;
+  const bool is_free = above_lower >= 0 && above_upper <= 0 && slack <= compliance * above_lower &&
+                       slack >= compliance * above_upper;
+  if (is_free) return static_cast<double>(std::abs(slack));
+  const Real diagonal = find_diagonal(problem, bodies, row, axis);
+  return static_cast<double>(std::abs(std::clamp(slack, diagonal * above_upper, diagonal * above_lower)));
 }
 
 // The largest entry of |v0|, |J v0| and |b|.

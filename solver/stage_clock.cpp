@@ -2,20 +2,14 @@
 
 #include <algorithm>
 #include <functional>
+#include <numeric>
 
 namespace cleave {
-
-double makespan_ms(std::span<const double> sorted_descending_ms, int workers,
-                   std::vector<double>& worker_ms) {
-  worker_ms.assign(workers, 0.0);
-  for (double task : sorted_descending_ms) *std::min_element(worker_ms.begin(), worker_ms.end()) += task;
-  return *std::max_element(worker_ms.begin(), worker_ms.end());
-}
 
 void StageClock::start() {
   times_.stage_ms.fill(0);
   task_ms_.clear();
-  stage_end_.clear();
+  stages_.clear();
   begin_ = Clock::now();
 }
 
@@ -26,7 +20,12 @@ void StageClock::add(Stage stage, double milliseconds) {
 void StageClock::add_tasks(std::span<const double> task_ms) {
   if (!models_) return;
   task_ms_.insert(task_ms_.end(), task_ms.begin(), task_ms.end());
-  stage_end_.push_back(task_ms_.size());
+  stages_.push_back({task_ms_.size(), nullptr});
+}
+
+void StageClock::add_graph(const TaskGraph& graph, std::span<const double> task_ms) {
+  add_tasks(task_ms);
+  if (models_) stages_.back().graph = &graph;
 }
 
 StageTimes StageClock::stop() {
@@ -38,12 +37,17 @@ StageTimes StageClock::stop() {
 // Total less what the tasks took, plus what they would take on so many workers.
 void StageClock::model() {
   times_.model_ms.fill(times_.total_ms);
-  for (std::size_t stage = 0, begin = 0; stage < stage_end_.size(); begin = stage_end_[stage++]) {
-    const std::span<double> tasks(task_ms_.data() + begin, stage_end_[stage] - begin);
-    std::ranges::sort(tasks, std::greater<>());
-    const double on_one_ms = makespan_ms(tasks, 1, worker_ms_);
+  std::size_t begin = 0;
+  for (const ParallelStage& stage : stages_) {
+    const std::span<double> tasks(task_ms_.data() + begin, stage.end - begin);
+    begin = stage.end;
+    if (stage.graph == nullptr) std::ranges::sort(tasks, std::greater<>());
+    const double on_one_ms = std::accumulate(tasks.begin(), tasks.end(), 0.0);
     for (std::size_t k = 0; k < kModelWorkers.size(); ++k) {
-      times_.model_ms[k] += makespan_ms(tasks, kModelWorkers[k], worker_ms_) - on_one_ms;
+      const int workers = kModelWorkers[k];
+      times_.model_ms[k] += (stage.graph == nullptr ? makespan_ms(tasks, workers, worker_ms_)
+                                                    : schedule_.makespan_ms(*stage.graph, tasks, workers)) -
+                            on_one_ms;
     }
   }
 }

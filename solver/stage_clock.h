@@ -1,8 +1,8 @@
 // Times of the named stages of a solve, and what the same tasks would take on p workers.
 //
-// A parallel stage is a set of independent tasks (one per subsystem, or per tile of the interface). Its
-// modelled makespan on p workers gives the longest task first to the worker that is free first; a solve on p
-// workers is then modelled as the sum of the makespans of its parallel stages plus all serial time. Task
+// A parallel stage is a set of tasks (one per subsystem, branch or tile), independent or of a graph. Their schedule
+// on p workers (task_schedule.h) gives the makespan of the stage; a solve on p workers is then modelled as the sum
+// of the makespans of its parallel stages plus all serial time. Task
 // times add up to wall time on one thread only, so a solve on more threads has no model. The model is made
 // after the clock has stopped: during the solve task times are only put down.
 #pragma once
@@ -14,6 +14,8 @@
 #include <span>
 #include <string_view>
 #include <vector>
+
+#include "solver/task_schedule.h"
 
 namespace cleave {
 
@@ -58,8 +60,9 @@ class StageClock {
 
   void start();                                // begins a solve: all zero
   void add(Stage stage, double milliseconds);  // serial or parallel wall time of a stage
-  // Tasks of one parallel stage that has just run (wall times in ms).
+  // Tasks of one parallel stage that has just run (wall times in ms): independent ones, or those of a graph.
   void add_tasks(std::span<const double> task_ms);
+  void add_graph(const TaskGraph& graph, std::span<const double> task_ms);
   StageTimes stop();  // ends the solve, then models it
 
  private:
@@ -69,9 +72,14 @@ class StageClock {
   bool models_;
   bool timing_ = false;
   StageTimes times_;
-  std::vector<double> task_ms_;         // of all parallel stages of the solve, one after the other
-  std::vector<std::size_t> stage_end_;  // where each of them ends in task_ms_
+  std::vector<double> task_ms_;  // of all parallel stages of the solve, one after the other
+  struct ParallelStage {
+    std::size_t end;         // where its tasks end in task_ms_
+    const TaskGraph* graph;  // nullptr: independent
+  };
+  std::vector<ParallelStage> stages_;
   std::vector<double> worker_ms_;
+  GraphSchedule schedule_;
   Clock::time_point begin_;
 };
 
@@ -97,8 +105,5 @@ class StageTimer {
   bool outermost_;
   StageClock::Clock::time_point begin_;
 };
-
-// Longest-task-first makespan of tasks on p workers; worker_ms is scratch.
-double makespan_ms(std::span<const double> sorted_descending_ms, int workers, std::vector<double>& worker_ms);
 
 }  // namespace cleave

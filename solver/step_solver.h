@@ -5,10 +5,13 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "solver/parts.h"
 #include "solver/solution.h"
 #include "solver/stage_clock.h"
 #include "solver/step_problem.h"
@@ -18,6 +21,8 @@ namespace cleave {
 
 enum class SolveStatus { ok, not_converged, timeout, out_of_memory, diverged, refused, crashed, skipped };
 const char* to_string(SolveStatus status);
+std::optional<SolveStatus> find_status(std::string_view name);  // by what to_string says
+std::vector<std::string> status_names();
 
 // Whether a solve with this status left impulses that can be judged, and numbers about itself.
 bool has_result(SolveStatus status);
@@ -52,21 +57,24 @@ class StepSolver {
  public:
   virtual ~StepSolver() = default;
 
-  // part_of_body: (n) ids 0..parts-1 of the subsystems; ignored where !uses_partition().
+  // parts: the subsystems, one part id per body and, where they are split recursively, the tree (parts.h);
+  // ignored where !uses_partition(), and the tree by kernels that know one level. Parts that are none are
+  // `refused`, with a message that names what is wrong.
   // solution.impulse is the warm start (m); impulse and velocity are the result. The object keeps its
   // scratch: the second solve of one structure allocates nothing in our code. Numerical trouble is a status,
   // never an exception; SolveStopped and std::bad_alloc are, and leave nothing in solution to rely on.
-  SolveSummary solve(const StepProblem& problem, std::span<const int> part_of_body, Solution& solution);
+  SolveSummary solve(const StepProblem& problem, const Parts& parts, Solution& solution);
 
-  // Whether the result's cost depends on part_of_body; solvers that ignore partitions run once a step.
+  // Whether the result's cost depends on the parts; solvers that ignore partitions run once a step.
   virtual bool uses_partition() const = 0;
 
  private:
   // Why this solver does not take the problem's impulse set (find_set_refusal, with the name of who refuses);
   // empty: it does. Asked only where some set is no interval of a row.
   virtual std::string refuse_set(const StepProblem& problem);
-  virtual SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
-                                Solution& solution) = 0;
+  virtual SolveSummary do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) = 0;
+
+  PartsCheck parts_check_;
 };
 
 }  // namespace cleave

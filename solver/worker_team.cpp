@@ -4,6 +4,7 @@
 #include <omp.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cstdlib>
@@ -11,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <random>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -77,8 +79,6 @@ bool look_out(Condition done) {
   return look_out_for(kLookOut, done) || (!was_pushed_off_lately() && look_out_for(kLongLookOut, done));
 }
 
-constexpr std::uint64_t kTasks = 0xffffffff;  // lower half of open_
-
 // OpenMP ends the program where the system makes no more threads. So as many are made by somebody who says so.
 void check_threads(int count) {
   std::atomic<bool> all_made{false};
@@ -100,18 +100,8 @@ void check_threads(int count) {
 
 }  // namespace
 
-void wait_until(std::atomic<int>& counter, int at_least) {
-  const auto reached = [&] { return counter.load(std::memory_order_acquire) >= at_least; };
-  if (reached() || look_out(reached)) return;
-  for (int seen = counter; seen < at_least; seen = counter) counter.wait(seen);
-}
-
-void raise(std::atomic<int>& counter) {
-  counter.fetch_add(1, std::memory_order_acq_rel);
-  counter.notify_all();
-}
-
-WorkerTeam::WorkerTeam(int threads) : threads_(threads) {
+WorkerTeam::WorkerTeam(int threads)
+    : threads_(threads), queues_(std::make_unique<Queue[]>(threads)), home_count_(threads) {
   if (threads == 1) return;
   asked_look_out();  // its error belongs to the caller
   check_threads(threads);
@@ -123,7 +113,7 @@ WorkerTeam::WorkerTeam(int threads) : threads_(threads) {
         granted_ = omp_get_num_threads();
         granted_.notify_all();
       } else {
-        work();
+        work(omp_get_thread_num());
       }
     }
   });
@@ -140,8 +130,8 @@ WorkerTeam::~WorkerTeam() {
 
 void WorkerTeam::dismiss() {
   stop_ = true;
-  open_.fetch_add(kTasks + 1);  // a stage without tasks, so that sleepers see a change
-  open_.notify_all();
+  calls_.fetch_add(1);
+  calls_.notify_all();
   // OpenMP ends the program from that thread where the system makes no more.
   if (workers_.get_id() == std::this_thread::get_id()) return workers_.detach();
   workers_.join();
@@ -156,17 +146,34 @@ WorkerTeam& WorkerTeam::shared(int threads) {
   return *team;
 }
 
-void WorkerTeam::finish_one() {
-  if (unfinished_.fetch_sub(1, std::memory_order_acq_rel) == 1) unfinished_.notify_all();
+// Wakes who sleeps and ends every look-out. A thread announces itself as watching before it looks into the queues for the
+// last time, so that either it sees the new task or is seen here.
+void WorkerTeam::call_others() {
+  if (watching_.load() == 0) return;
+  calls_.fetch_add(1);
+  calls_.notify_all();
 }
 
-// Runs the next task that nobody has started; false when there is none.
-bool WorkerTeam::take_one() {
-  std::uint64_t open = open_.load(std::memory_order_acquire);
+void WorkerTeam::finish_one() {
+  if (unfinished_.fetch_sub(1) == 1) call_others();
+}
+
+// The task of the next ticket. Its entry may be a moment behind the count of open tasks.
+int WorkerTeam::index_of(Queue& queue) {
+  const int ticket = queue.taken.fetch_add(1, std::memory_order_relaxed);
+  if (graph_ == nullptr) return queue.first + ticket;
+  int index;
+  while ((index = queue.tasks[ticket].load(std::memory_order_acquire)) < 0) _mm_pause();
+  return index;
+}
+
+// Runs the next task of a queue that nobody has started; false when there is none.
+bool WorkerTeam::take_from(Queue& queue) {
+  int open = queue.open.load(std::memory_order_acquire);
   do {
-    if ((open & kTasks) == 0) return false;
-  } while (!open_.compare_exchange_weak(open, open - 1, std::memory_order_acq_rel));
-  const int index = count_ - static_cast<int>(open & kTasks);
+    if (open <= 0) return false;
+  } while (!queue.open.compare_exchange_weak(open, open - 1, std::memory_order_acq_rel));
+  const int index = index_of(queue);
   if (!failed_.load(std::memory_order_acquire)) {
     try {
       task_(context_, index);
@@ -174,39 +181,119 @@ bool WorkerTeam::take_one() {
       if (!failed_.exchange(true)) failure_ = std::current_exception();
     }
   }
+  if (graph_ != nullptr) release_next(index);
   finish_one();
   return true;
 }
 
-void WorkerTeam::work() {
-  while (!stop_) {
-    while (take_one()) {
-    }
-    const std::uint64_t seen = open_.load(std::memory_order_acquire);
-    if ((seen & kTasks) != 0 || stop_) continue;
-    if (look_out([&] { return open_.load(std::memory_order_acquire) != seen; })) continue;
-    open_.wait(seen);
+bool WorkerTeam::take_one(int thread) {
+  for (int k = 0; k < threads_; ++k) {
+    if (take_from(queues_[(thread + k) % threads_])) return true;
   }
+  return false;
+}
+
+void WorkerTeam::work(int thread) {
+  while (!stop_) {
+    while (take_one(thread)) {
+    }
+    ++watching_;
+    const std::uint32_t seen = calls_.load();
+    if (!take_one(thread) && !stop_ && !look_out([&] { return calls_.load() != seen; })) calls_.wait(seen);
+    --watching_;
+  }
+}
+
+void WorkerTeam::begin_stage(int count, Task task, void* context) {
+  task_ = task;
+  context_ = context;
+  failed_ = false;
+  unfinished_.store(count);
+}
+
+// The caller works along and then waits for the tasks of others.
+void WorkerTeam::finish_stage() {
+  const auto all_done = [this] { return unfinished_.load() == 0; };
+  call_others();
+  while (!all_done()) {
+    if (take_one(0)) continue;
+    ++watching_;
+    const std::uint32_t seen = calls_.load();
+    const auto changed = [&] { return all_done() || calls_.load() != seen; };
+    if (!take_one(0) && !all_done() && !look_out(changed)) calls_.wait(seen);
+    --watching_;
+  }
+  if (failed_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void WorkerTeam::run(int count, Task task, void* context) {
   if (count <= 0) return;
   const std::scoped_lock lock(one_caller_);
-  task_ = task;
-  context_ = context;
-  count_ = count;
-  failed_ = false;
-  unfinished_.store(count, std::memory_order_release);
-  const std::uint64_t stage = (open_.load() & ~kTasks) + kTasks + 1;
-  open_.store(stage + static_cast<std::uint64_t>(count), std::memory_order_release);
-  open_.notify_all();
-  while (take_one()) {
+  graph_ = nullptr;
+  begin_stage(count, task, context);
+  for (int k = 0, first = 0; k < threads_; ++k) {
+    const int end = static_cast<int>((k + 1) * static_cast<std::int64_t>(count) / threads_);
+    queues_[k].first = first;
+    queues_[k].taken.store(0, std::memory_order_relaxed);
+    queues_[k].open.store(end - first, std::memory_order_release);
+    first = end;
   }
-  const auto all_done = [&] { return unfinished_.load(std::memory_order_acquire) == 0; };
-  if (!look_out(all_done)) {
-    for (int left = unfinished_; left != 0; left = unfinished_) unfinished_.wait(left);
+  finish_stage();
+}
+
+// An entry, then the right to take it.
+void WorkerTeam::list(int task) {
+  Queue& queue = queues_[graph_->home(task, threads_)];
+  queue.tasks[queue.listed.fetch_add(1, std::memory_order_relaxed)].store(task, std::memory_order_release);
+  queue.open.fetch_add(1);
+}
+
+// Tasks that waited for this one alone may start now.
+void WorkerTeam::release_next(int task) {
+  bool released = false;
+  for (const int next : graph_->next(task)) {
+    if (waits_[next].fetch_sub(1, std::memory_order_acq_rel) != 1) continue;
+    list(next);
+    released = true;
   }
-  if (failed_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  if (released) call_others();
+}
+
+// Those that wait for none.
+void WorkerTeam::list_first_tasks() {
+  const int count = graph_->task_count();
+  if (count > waits_capacity_) {
+    waits_ = std::make_unique<std::atomic<int>[]>(count);
+    waits_capacity_ = count;
+  }
+  first_tasks_.clear();
+  std::ranges::fill(home_count_, 0);
+  for (int i = 0; i < count; ++i) {
+    waits_[i].store(graph_->wait_count(i), std::memory_order_relaxed);
+    ++home_count_[graph_->home(i, threads_)];
+    if (graph_->wait_count(i) == 0) first_tasks_.push_back(i);
+  }
+  for (int k = 0; k < threads_; ++k) {
+    Queue& queue = queues_[k];
+    if (home_count_[k] > queue.capacity) {
+      queue.tasks = std::make_unique<std::atomic<int>[]>(home_count_[k]);
+      queue.capacity = home_count_[k];
+    }
+    for (int i = 0; i < home_count_[k]; ++i) queue.tasks[i].store(-1, std::memory_order_relaxed);
+    queue.taken.store(0, std::memory_order_relaxed);
+    queue.listed.store(0, std::memory_order_relaxed);
+  }
+  if (shuffles()) std::ranges::shuffle(first_tasks_, std::mt19937_64(shuffle_seed_++));
+}
+
+void WorkerTeam::run(const TaskGraph& graph, Task task, void* context) {
+  if (graph.task_count() == 0) return;
+  const std::scoped_lock lock(one_caller_);
+  graph_ = &graph;
+  list_first_tasks();
+  begin_stage(graph.task_count(), task, context);
+  for (const int first : first_tasks_) list(first);
+  finish_stage();
 }
 
 }  // namespace cleave

@@ -1,4 +1,4 @@
-// Threads that run the independent tasks of one parallel stage after another.
+// Threads that run the tasks of one parallel stage after another: independent ones, or those of a graph.
 //
 // A stage is over when its tasks are, not when every thread has come by: a thread that the machine holds
 // back, because its core is busy with something else, costs nothing unless it holds a task. (The barrier at
@@ -6,13 +6,20 @@
 // two threads 17 times slower that way.) Threads without work look for it for a moment and then sleep; for
 // how long can be set by CLEAVE_LOOK_OUT_US in the environment, where a machine is known to be one's own.
 // OpenMP makes the threads, so its settings apply to them: OMP_PLACES, OMP_PROC_BIND, OMP_STACKSIZE.
+//
+// Every thread has a queue. A task is put into the queue of its home, and a thread whose own is empty takes from the
+// others': the same tasks of stage after stage mostly meet the same core and what it has in its cache.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <thread>
+#include <vector>
+
+#include "solver/task_graph.h"
 
 namespace cleave {
 
@@ -30,40 +37,65 @@ class WorkerTeam {
 
   using Task = void (*)(void* context, int index);
 
-  // Calls task(context, i) for i = 0..count-1 and returns when all have returned. They are started in
-  // ascending order, so a task may wait for an earlier one where no task of the stage throws. The first
-  // exception of a task is thrown here, once no task is running; tasks not started by then are left out. Not
-  // to be called from within a task.
+  // Calls task(context, i) for i = 0..count-1, in any order, and returns when all have returned. The first
+  // exception of a task is thrown here, once no task is running; tasks not started by then are left out. No task may
+  // wait for another. Not to be called from within a task.
   void run(int count, Task task, void* context);
+
+  // The tasks of a graph, each started when those it waits for have returned.
+  void run(const TaskGraph& graph, Task task, void* context);
+
+  // For tests: tasks of graphs are listed in an order drawn from this seed, as far as the graph allows; 0, in the order
+  // in which they become ready. Not while a stage runs.
+  void shuffle(std::uint64_t seed) { shuffle_seed_ = seed; }
+  bool shuffles() const { return shuffle_seed_ != 0; }
 
   int threads() const { return threads_; }
 
  private:
-  void dismiss();
-  bool take_one();
-  void work();
+  // Who counts `open` down by one owns a ticket, the next number of `taken`, and with it a task.
+  struct alignas(64) Queue {
+    std::atomic<int> open{0};  // tasks that nobody has started
+    std::atomic<int> taken{0};
+    std::atomic<int> listed{0};  // of a graph: entries of `tasks` in use or about to be
+    int first = 0;               // of independent tasks: the first; those of the other tickets follow
+    int capacity = 0;
+    std::unique_ptr<std::atomic<int>[]> tasks;  // of a graph: by ticket, -1 until it is there
+  };
+
+  void begin_stage(int count, Task task, void* context);
+  void finish_stage();
+  void list_first_tasks();
+  void list(int task);
+  void release_next(int task);
+  int index_of(Queue& queue);
+  bool take_one(int thread);
+  bool take_from(Queue& queue);
   void finish_one();
+  void call_others();
+  void work(int thread);
+  void dismiss();
 
   const int threads_;
   std::mutex one_caller_;
   // The stage at hand. Written by its caller while nobody holds a task.
   Task task_ = nullptr;
   void* context_ = nullptr;
-  int count_ = 0;
+  const TaskGraph* graph_ = nullptr;
   std::exception_ptr failure_;
   std::atomic<bool> failed_{false};
-  // Number of the stage in the upper half, tasks not yet started in the lower: who counts it down by one owns
-  // a task, and a thread that comes late finds none.
-  std::atomic<std::uint64_t> open_{0};
+  std::unique_ptr<Queue[]> queues_;
+  int waits_capacity_ = 0;
+  std::unique_ptr<std::atomic<int>[]> waits_;  // of a graph: how many tasks each still waits for
+  std::vector<int> first_tasks_, home_count_;
+  std::uint64_t shuffle_seed_ = 0;
   std::atomic<int> unfinished_{0};
+  // Threads that found nothing to do watch for a change of `calls_`.
+  std::atomic<std::uint32_t> calls_{0};
+  std::atomic<int> watching_{0};
   std::atomic<bool> stop_{false};
   std::atomic<int> granted_{0};  // threads of the region, once it has begun
   std::thread workers_;
 };
-
-// Waits until a counter that other threads raise has reached a value: for a moment awake, then asleep.
-void wait_until(std::atomic<int>& counter, int at_least);
-// Raises it and wakes who waits for it.
-void raise(std::atomic<int>& counter);
 
 }  // namespace cleave

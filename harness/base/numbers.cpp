@@ -24,6 +24,12 @@ std::errc read(const std::string& text, Number& value) {
   return error == std::errc{} && stop != end ? std::errc::invalid_argument : error;
 }
 
+// A whole number as one writes it: 200000, not 2e+05.
+std::string end_text(double end) {
+  const bool is_count = end == std::floor(end) && std::abs(end) < 1e6;
+  return is_count ? std::to_string(static_cast<int>(end)) : number_text(end);
+}
+
 }  // namespace
 
 std::vector<std::string> split_list(const std::string& text) {
@@ -45,7 +51,7 @@ bool Range::contains(double value) const {
 
 std::string Range::text() const {
   std::string text = min_open || std::isinf(min) ? "(" : "[";
-  text += number_text(min) + ", " + number_text(max);
+  text += end_text(min) + ", " + end_text(max);
   return text + (max_open || std::isinf(max) ? ")" : "]");
 }
 

@@ -9,6 +9,7 @@
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
 #include "harness/experiment/options.h"
+#include "harness/experiment/step_columns.h"
 #include "harness/files/problem_file.h"
 
 namespace cleave {
@@ -53,13 +54,9 @@ std::vector<Algorithm> stored_list(const StoredManifest& manifest, const std::st
 }
 
 std::string scene_options(const StoredManifest& manifest) {
-  std::vector<std::string> pairs;
   check_algorithm("scene", manifest.option("scene"));
-  for (const Parameter& parameter : parameters_of("scene", algorithm_name(manifest.option("scene"))))
-    if (parameter.kind != Parameter::Kind::path)
-      pairs.push_back(parameter.name + "=" + manifest.option(parameter.name));
-  std::ranges::sort(pairs);
-  return pairs.empty() ? "-" : joined(pairs, ";");
+  return scene_options_cell(parameters_of("scene", algorithm_name(manifest.option("scene"))),
+                            [&](const std::string& name) { return manifest.option(name); });
 }
 
 StepRecord world_columns(const StoredManifest& manifest) {
@@ -150,10 +147,7 @@ StepRecord ExpectedRows::row(std::size_t index) const {
   row.partitioner = named.partitioner;
   row.refiner = named.refiner;
   row.solver = named.solver;
-  for (const auto& [column, value] : named.parameters) {
-    const auto [entry, is_new] = row.parameters.emplace(column, value);
-    if (!is_new && entry->second != value) entry->second += ";" + value;
-  }
+  for (const auto& [column, cell] : named.parameters) row.add_parameter(column, cell);
   if (!files_.empty()) row.problem_file = files_[at];
   if (is_replay_) return row;
   row.step = steps_[at];
@@ -176,8 +170,8 @@ std::string run_id_of(const StoredManifest& manifest) {
   std::vector<OptionValue> values = manifest.options;
   for (OptionValue& value : values) {
     value.in_run_id = value.name != "files";
-    const auto of_table = std::ranges::find(run_option_specs(), value.name, &OptionSpec::name);
-    if (of_table == run_option_specs().end()) continue;
+    const OptionSpec* of_table = find_option(value.name);
+    if (of_table == nullptr) continue;
     value.in_run_id = of_table->in_run_id;
     // A number of the table that was not given has this text.
     if (value.text.empty() && of_table->kind == OptionKind::number) value.text = "nan";

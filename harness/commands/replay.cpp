@@ -100,8 +100,7 @@ StepRecord columns_of(const ProblemFile& file, const std::string& path, const Re
   return row;
 }
 
-void store(const Combination& combination, const StepRecord& row, const Outcome& outcome,
-           bool skip_small_islands, ProblemFile& file) {
+void store(const Combination& combination, const StepRecord& row, const Outcome& outcome, ProblemFile& file) {
   const std::string label = combination.name().label();
   file.solutions.erase(label);
   file.partitions.erase(label);
@@ -115,8 +114,8 @@ void store(const Combination& combination, const StepRecord& row, const Outcome&
                            outcome.solution.impulse,
                            outcome.verdict.velocity};
   if (!outcome.part_of_body.empty())
-    file.partitions[label] = stored_partition(combination.partitioner(), combination.refiner(),
-                                              skip_small_islands, outcome.part_of_body);
+    file.partitions[label] =
+        stored_partition(combination.split_setup(), outcome.part_of_body, outcome.parent_of_part);
 }
 
 class Replay {
@@ -148,12 +147,13 @@ class Replay {
   void solve(const std::string& path, const fs::path& out, CsvRecorder& recorder) {
     ProblemFile file = read_problem_file(path);
     std::vector<StepRecord> rows(combinations_.size(), columns_of(file, path, options_));
-    StepProblem problem = file.problem;
-    if (options_.cold) std::ranges::fill(problem.warm_impulse, 0.0);
-    const std::vector<Outcome> outcomes = measure_all(combinations_, problem, summary_.measured_steps, rows);
+    std::vector<double> recorded = file.problem.warm_impulse;
+    if (options_.cold) std::ranges::fill(file.problem.warm_impulse, 0.0);
+    const std::vector<Outcome> outcomes =
+        measure_all(combinations_, file.problem, summary_.measured_steps, rows);
     if (options_.write_solutions) {
-      for (std::size_t i = 0; i < rows.size(); ++i)
-        store(combinations_[i], rows[i], outcomes[i], options_.solve.skip_small_islands, file);
+      file.problem.warm_impulse = std::move(recorded);  // a copy of the file is of the same problem
+      for (std::size_t i = 0; i < rows.size(); ++i) store(combinations_[i], rows[i], outcomes[i], file);
       write_problem_file(out / fs::path(path).filename(), file);
     }
     for (const StepRecord& row : rows) summary_.add(row);

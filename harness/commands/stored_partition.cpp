@@ -1,15 +1,19 @@
 #include "harness/commands/stored_partition.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
+#include "harness/base/numbers.h"
 #include "harness/experiment/algorithms.h"
 
 namespace cleave {
 namespace {
 
 constexpr const char* kSkipSmallIslands = "skip_small_islands";
+constexpr const char* kArity = "arity";
 constexpr const char* kOfRefiner = "refiner_";
+constexpr Range kArities{2, std::numeric_limits<double>::infinity()};
 
 void add_parameters(const std::string& option, const Algorithm& algorithm, const std::string& prefix,
                     std::vector<StoredParameter>& to) {
@@ -52,13 +56,16 @@ Algorithm read_stored(const StoredPartition& partition, const std::string& optio
 
 }  // namespace
 
-StoredPartition stored_partition(const Algorithm& partitioner, const Algorithm& refiner,
-                                 bool skip_small_islands, std::vector<int> part_of_body) {
-  StoredPartition stored{partitioner.text, refiner.text, {}, std::move(part_of_body)};
-  add_parameters("partitioner", partitioner, "", stored.parameters);
-  add_parameters("refiner", refiner, kOfRefiner, stored.parameters);
+StoredPartition stored_partition(const SplitSetup& setup, std::vector<int> part_of_body,
+                                 std::vector<int> parent_of_part) {
+  StoredPartition stored{
+      setup.partitioner.text, setup.refiner.text, {}, std::move(part_of_body), std::move(parent_of_part)};
+  add_parameters("partitioner", setup.partitioner, "", stored.parameters);
+  add_parameters("refiner", setup.refiner, kOfRefiner, stored.parameters);
   stored.parameters.push_back(
-      {kSkipSmallIslands, Parameter::Kind::flag, skip_small_islands ? "true" : "false"});
+      {kSkipSmallIslands, Parameter::Kind::flag, setup.skip_small_islands ? "true" : "false"});
+  if (setup.arity)
+    stored.parameters.push_back({kArity, Parameter::Kind::integer, std::to_string(*setup.arity)});
   return stored;
 }
 
@@ -71,6 +78,10 @@ SplitSetup read_split_setup(const StoredPartition& partition) {
                    read_stored_refiner(partition)};
   const StoredParameter* skip = find_stored(partition, kSkipSmallIslands);
   setup.skip_small_islands = skip != nullptr && skip->text == "true";
+  if (const StoredParameter* arity = find_stored(partition, kArity))
+    setup.arity = static_cast<int>(parse_integer("--arity", arity->text, kArities));
+  else if (!partition.parent_of_part.empty())
+    throw std::invalid_argument("arity is missing, which parts in a tree have");
   return setup;
 }
 

@@ -4,19 +4,14 @@
 #include <vector>
 
 #include "harness/base/algorithm.h"
+#include "harness/experiment/splitter.h"
 #include "harness/files/problem_file.h"
 
 namespace cleave {
 
 // With every parameter that shaped it.
-StoredPartition stored_partition(const Algorithm& partitioner, const Algorithm& refiner,
-                                 bool skip_small_islands, std::vector<int> part_of_body);
-
-// How the bodies were split.
-struct SplitSetup {
-  Algorithm partitioner, refiner;
-  bool skip_small_islands = false;
-};
+StoredPartition stored_partition(const SplitSetup& setup, std::vector<int> part_of_body,
+                                 std::vector<int> parent_of_part);
 
 // Throws std::invalid_argument with one line: an algorithm that is none of ours, a parameter that is missing,
 // of another type or outside its range.

@@ -72,6 +72,7 @@ void check_outside_parts(const StoredPartition& partition, const std::string& co
   std::string error;
   if (!std::regex_match(fingerprint, form))
     error = "; fingerprint of the files = '" + fingerprint + "', allowed: 16 hexadecimal digits";
+  if (!partition.parent_of_part.empty()) error += "; a tree of parts, allowed: one level, as parts from files are";
   try {
     read_stored_refiner(partition);
   } catch (const std::invalid_argument& wrong) {
@@ -92,18 +93,21 @@ void check_split(const StepProblem& problem, const StoredPartition& partition, i
     return check_outside_parts(partition, counted, subject, list);
   std::optional<Splitter> splitter;
   try {
-    const SplitSetup setup = read_split_setup(partition);
-    splitter.emplace(setup.partitioner, setup.refiner, setup.skip_small_islands);
+    splitter.emplace(read_split_setup(partition));
   } catch (const std::invalid_argument& error) {
     list.add(false, subject, counted + "; cannot be split again: " + error.what());
     return;
   }
-  const std::vector<int> again = splitter->run(problem, step).parts.part_of_body;
+  const Split again = splitter->run(problem, step);
+  const std::vector<int>& parts = again.parts.part_of_body;
   const int moved = static_cast<int>(std::inner_product(
-      again.begin(), again.end(), partition.part_of_body.begin(), 0, std::plus<>(), std::not_equal_to<>()));
-  list.add(
-      moved == 0, subject,
-      counted + "; split again, " + (moved == 0 ? "the same" : std::to_string(moved) + " bodies differ"));
+      parts.begin(), parts.end(), partition.part_of_body.begin(), 0, std::plus<>(), std::not_equal_to<>()));
+  const bool same_tree = again.parent_of_part == partition.parent_of_part;
+  list.add(moved == 0 && same_tree, subject,
+           counted + "; split again, " +
+               (moved > 0    ? std::to_string(moved) + " bodies differ"
+                : !same_tree ? "the parts are the same and their tree is another"
+                             : "the same"));
 }
 
 void check_partition(const std::string& label, const StepProblem& problem, const StoredPartition& partition,

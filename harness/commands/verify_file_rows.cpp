@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <map>
 #include <stdexcept>
 #include <vector>
 
@@ -55,13 +55,8 @@ class RowCheck {
   // Texts must be the same, and numbers are printed so that equal ones are.
   template <std::size_t N>
   void same_cells(const StepRecord& found, const char* const (&columns)[N]) {
-    const std::vector<std::string> header = split_csv_line(csv_header());
-    const std::vector<std::string> cells = split_csv_line(csv_line(found));
-    for (const char* column : columns) {
-      std::string cell = cells[std::ranges::find(header, column) - header.begin()];
-      if (!cell.empty() && cell.back() == '\n') cell.pop_back();
-      note(table_.cell(row_, column) == cell, column, table_.cell(row_, column), cell);
-    }
+    const std::map<std::string, std::string> cells = cells_of(found);
+    for (const char* column : columns) same_text(column, cells.at(column));
   }
 
   // Sums of floating-point numbers, which another compiler may round differently.
@@ -126,9 +121,7 @@ void check_grown(const ProblemFile& file, const StoredPartition& partition, Step
                  RowCheck& check) {
   if (content_of("partitioner", algorithm_name(partition.partitioner)) != nullptr) return;
   try {
-    const SplitSetup setup = read_split_setup(partition);
-    const Splitter splitter(setup.partitioner, setup.refiner, setup.skip_small_islands);
-    const Split split = splitter.run(file.problem, file.step);
+    const Split split = Splitter(read_split_setup(partition)).run(file.problem, file.step);
     found.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
   } catch (const std::invalid_argument&) {
     return;

@@ -34,6 +34,11 @@ class EqualInGroup {
   std::map<std::string, std::size_t> first_row_;
 };
 
+// Solvers that take a tree of parts split by recursion, by the arity that they say; no other row has one.
+std::string arity_cell(const StepsTable& table, std::size_t row) {
+  return std::ranges::count(table.header(), "arity") > 0 ? table.cell(row, "arity") : "";
+}
+
 StepRecord counted_columns(const StepsTable& table, std::size_t row) {
   StepRecord record;
   record.status = table.cell(row, "status");
@@ -65,10 +70,11 @@ void check_rows_of_problems(const StepsTable& table, const ExpectedRows& expecte
   for (std::size_t row = 0; row < rows; ++row) {
     const std::string of = std::to_string(expected.problem(row));
     const std::string pair = table.cell(row, "partitioner") + "+" + table.cell(row, "refiner");
+    const std::string arity = " " + arity_cell(table, row);
     problem.add(table, row, of, findings);
     if (has_result(table.cell(row, "status"))) solved.add(table, row, of, findings);
-    grown.add(table, row, of + " " + table.cell(row, "partitioner"), findings);
-    refined.add(table, row, of + " " + pair, findings);
+    grown.add(table, row, of + " " + table.cell(row, "partitioner") + arity, findings);
+    refined.add(table, row, of + " " + pair + arity, findings);
   }
   list.add(findings.none(), subject, "rows of a problem agree about it" + findings.text());
 }

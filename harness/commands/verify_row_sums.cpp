@@ -5,9 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <set>
+#include <optional>
 #include <type_traits>
 
+#include "harness/base/names.h"
 #include "harness/base/numbers.h"
 #include "harness/experiment/step_record.h"
 #include "solver/step_problem.h"
@@ -72,13 +73,7 @@ class RowAlone {
   void check_status() {
     const std::string& status = text("status");
     const bool result = has_result(status);
-    static const std::set<std::string> known = [] {
-      std::set<std::string> names;
-      for (int i = 0; i <= static_cast<int>(SolveStatus::skipped); ++i)
-        names.insert(to_string(static_cast<SolveStatus>(i)));
-      return names;
-    }();
-    require(known.contains(status), "status", "a status that there is");
+    require(find_status(status).has_value(), "status", joined(status_names(), ", "));
     for (const char* column : kOfResult) {
       if (status == "diverged" && std::ranges::count(kNanWhenDiverged, std::string(column)) > 0) continue;
       require((text(column) != "nan" && text(column) != "-") == result, column,
@@ -86,8 +81,7 @@ class RowAlone {
     }
     if (status == "ok") require(text("status_reason") == "-", "status_reason", "- where status is ok");
     if (!result || status == "ok" || text("status_reason") != "-") return;
-    const double limit_m_per_s = kExactLimit * std::max(1.0, number("largest_free_velocity_m_per_s"));
-    require(!(number("residual_m_per_s") <= limit_m_per_s), "status",
+    require(!residual_is_exact(table_, row_), "status",
             "ok, as the residual is within the limit and no reason is given");
   }
 
@@ -145,8 +139,14 @@ class RowAlone {
 
 }  // namespace
 
+bool residual_is_exact(const StepsTable& table, std::size_t row) {
+  return table.number(row, "residual_m_per_s") <=
+         kExactLimit * std::max(1.0, table.number(row, "largest_free_velocity_m_per_s"));
+}
+
 bool has_result(const std::string& status) {
-  return status == "ok" || status == "not_converged" || status == "timeout" || status == "diverged";
+  const std::optional<SolveStatus> known = find_status(status);
+  return known && has_result(*known);
 }
 
 bool check_cells(const StepsTable& table, const std::string& subject, CheckList& list) {

@@ -14,6 +14,9 @@ bool check_cells(const StepsTable& table, const std::string& subject, CheckList&
 // Sums, orders and what a status implies, row by row.
 void check_rows_alone(const StepsTable& table, const std::string& subject, CheckList& list);
 
+// By the row's own numbers: its residual is within the limit of exact.
+bool residual_is_exact(const StepsTable& table, std::size_t row);
+
 // The solve of the row returned something to judge.
 bool has_result(const std::string& status);
 

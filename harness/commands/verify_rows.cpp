@@ -118,17 +118,6 @@ std::vector<std::string> columns_of_options(bool is_replay) {
   return names;
 }
 
-// As csv_line writes them, by column.
-std::map<std::string, std::string> cells_of(const StepRecord& row) {
-  static const std::vector<std::string> header = header_of_program();
-  std::string line = csv_line(row);
-  line.pop_back();
-  const std::vector<std::string> cells = split_csv_line(line);
-  std::map<std::string, std::string> by_column;
-  for (std::size_t i = 0; i < header.size(); ++i) by_column.emplace(header[i], cells[i]);
-  return by_column;
-}
-
 void check_options_in_rows(const StepsTable& table, const ExpectedRows& expected, const std::string& subject,
                            CheckList& list) {
   const std::vector<std::string> columns = columns_of_options(expected.is_replay());
@@ -159,8 +148,7 @@ void check_limits(const StepsTable& table, const std::string& subject, CheckList
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     if (table.cell(row, "status") != "ok") continue;
     ++ok;
-    const double limit = kExactLimit * std::max(1.0, table.number(row, "largest_free_velocity_m_per_s"));
-    if (!(table.number(row, "residual_m_per_s") <= limit))
+    if (!residual_is_exact(table, row))
       wrong.add(StepsTable::line_of(row) + " says ok with a residual of " +
                 table.cell(row, "residual_m_per_s") + " m/s");
   }

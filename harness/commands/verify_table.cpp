@@ -59,4 +59,14 @@ double StepsTable::number(std::size_t row, const std::string& column) const {
   return value;
 }
 
+std::map<std::string, std::string> cells_of(const StepRecord& row) {
+  static const std::vector<Column> header = columns();
+  std::string line = csv_line(row);
+  line.pop_back();
+  const std::vector<std::string> cells = split_csv_line(line);
+  std::map<std::string, std::string> by_column;
+  for (std::size_t i = 0; i < header.size(); ++i) by_column.emplace(header[i].name, cells[i]);
+  return by_column;
+}
+
 }  // namespace cleave

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/experiment/step_record.h"
+
 namespace cleave {
 
 class StepsTable {
@@ -33,5 +35,8 @@ class StepsTable {
 
 // The cells of one line without its end, unquoted.
 std::vector<std::string> split_csv_line(const std::string& line);
+
+// By column, what the program would write of a row.
+std::map<std::string, std::string> cells_of(const StepRecord& row);
 
 }  // namespace cleave

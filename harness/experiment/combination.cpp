@@ -13,9 +13,9 @@
 namespace cleave {
 namespace {
 
-// What the solver is handed: a solver that ignores parts still receives one id per body.
-std::vector<int> solver_parts(const std::optional<Split>& split, const StepProblem& problem) {
-  return split ? split->parts.part_of_body : std::vector<int>(problem.body_count(), 0);
+// What the solver is handed; a solver that ignores parts receives none.
+Parts solver_parts(const std::optional<Split>& split) {
+  return split ? Parts(split->parts.part_of_body, split->parent_of_part) : Parts();
 }
 
 bool all_finite(std::span<const double> values) {
@@ -100,11 +100,10 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
       context_(&context),
       solver_(make_solver(solver, solve_options_, context)) {
   if (solver_->uses_partition()) {
-    splitter_.emplace(partitioner, refiner, options.skip_small_islands);
+    setup_ = {partitioner, refiner, options.skip_small_islands, arity_of(solver)};
+    splitter_.emplace(setup_);
     name_.partitioner = partitioner.text;
     name_.refiner = refiner.text;
-    partitioner_ = partitioner;
-    refiner_ = refiner;
   }
 }
 
@@ -117,7 +116,7 @@ Combination::Repeat Combination::repeat(const StepProblem& problem, int step) {
   Repeat repeat;
   try {
     repeat.split = split(problem, step);
-    solve_parts(problem, solver_parts(repeat.split, problem), repeat.outcome);
+    solve_parts(problem, solver_parts(repeat.split), repeat.outcome);
   } catch (const CannotSplit& error) {
     repeat.outcome = unsolved(problem, SolveStatus::refused, error.what());
   } catch (const std::bad_alloc&) {
@@ -127,7 +126,7 @@ Combination::Repeat Combination::repeat(const StepProblem& problem, int step) {
   return repeat;
 }
 
-void Combination::solve_parts(const StepProblem& problem, std::span<const int> parts, Outcome& outcome) {
+void Combination::solve_parts(const StepProblem& problem, const Parts& parts, Outcome& outcome) {
   if (solver_ == nullptr) solver_ = make_solver(solver_named_, solve_options_, *context_);
   outcome.solution.impulse = problem.warm_impulse;
   outcome.solution.velocity.assign(problem.free_velocity.size(), 0.0);
@@ -141,7 +140,7 @@ void Combination::set_names(StepRecord& row) const {
   row.partitioner = name_.partitioner;
   row.refiner = name_.refiner;
   row.solver = name_.solver;
-  for (const Algorithm* algorithm : {&partitioner_, &refiner_, &solver_named_})
+  for (const Algorithm* algorithm : {&setup_.partitioner, &setup_.refiner, &solver_named_})
     row.add_parameters(algorithm->settings);
 }
 
@@ -173,7 +172,10 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   row.set_summary(chosen.outcome.summary);
   row.peak_memory_mb = peak_memory_mb();
   set_verdict(problem, chosen.outcome, row);
-  if (chosen.split) chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
+  if (chosen.split) {
+    chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
+    chosen.outcome.parent_of_part = chosen.split->parent_of_part;
+  }
   if (chosen.outcome.solved())
     set_measures(problem, chosen.split ? &chosen.split->graph : nullptr, chosen.outcome, row);
   if (!failed) {
@@ -193,7 +195,8 @@ ConvergedBounds Combination::converge_bounds(StepProblem& problem, int step) {
   // Where this fails, the solve that follows says why.
   try {
     if (solver_ == nullptr) solver_ = make_solver(solver_named_, solve_options_, *context_);
-    return converge_friction_bounds(problem, *solver_, solver_parts(split(problem, step), problem), solution);
+    const std::optional<Split> bodies = split(problem, step);
+    return converge_friction_bounds(problem, *solver_, solver_parts(bodies), solution);
   } catch (const CannotSplit&) {
     return {};
   } catch (const std::bad_alloc&) {

@@ -38,7 +38,8 @@ struct Outcome {
   SolveSummary summary;
   CoreTimes cores{};  // of the solve
   Solution solution;
-  std::vector<int> part_of_body;  // (n) what `measure` split the bodies into; empty where parts are ignored
+  std::vector<int> part_of_body;    // (n) what `measure` split the bodies into; empty where parts are ignored
+  std::vector<int> parent_of_part;  // the tree of these parts; empty: one level
   ResidualReport verdict;
   bool finite = false;  // impulses and velocities are numbers
 
@@ -58,8 +59,7 @@ class Combination {
   const CombinationName& name() const { return name_; }
 
   // Who splits; of a solver that ignores parts both have no name.
-  const Algorithm& partitioner() const { return partitioner_; }
-  const Algorithm& refiner() const { return refiner_; }
+  const SplitSetup& split_setup() const { return setup_; }
 
   // Names and parameters.
   void set_names(StepRecord& row) const;
@@ -84,10 +84,11 @@ class Combination {
   };
   std::optional<Split> split(const StepProblem& problem, int step) const;
   Repeat repeat(const StepProblem& problem, int step);
-  void solve_parts(const StepProblem& problem, std::span<const int> parts, Outcome& outcome);
+  void solve_parts(const StepProblem& problem, const Parts& parts, Outcome& outcome);
 
   CombinationName name_;
-  Algorithm partitioner_, refiner_, solver_named_;
+  SplitSetup setup_;
+  Algorithm solver_named_;
   int repeats_;
   SolveOptions solve_options_;
   const StepContext* context_;

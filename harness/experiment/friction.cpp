@@ -119,11 +119,11 @@ double bound_mismatch(const StepProblem& problem, std::span<const double> impuls
   return mismatch;
 }
 
-ConvergedBounds converge_friction_bounds(StepProblem& problem, StepSolver& solver,
-                                         std::span<const int> part_of_body, Solution& solution) {
+ConvergedBounds converge_friction_bounds(StepProblem& problem, StepSolver& solver, const Parts& parts,
+                                         Solution& solution) {
   ConvergedBounds result;
   while (true) {
-    result.last_summary = solver.solve(problem, part_of_body, solution);
+    result.last_summary = solver.solve(problem, parts, solution);
     ++result.solves;
     result.mismatch = bound_mismatch(problem, solution.impulse);
     if (result.last_summary.status != SolveStatus::ok) return result;

@@ -57,7 +57,7 @@ struct ConvergedBounds {
 // kBoundTolerance, the solver fails or kBoundIterationCap solves are done. The fixed point need not exist or
 // attract; `converged` and `mismatch` say what came out. `problem` is left with the bounds that `solution`
 // was solved for, a true MLCP in either case.
-ConvergedBounds converge_friction_bounds(StepProblem& problem, StepSolver& solver,
-                                         std::span<const int> part_of_body, Solution& solution);
+ConvergedBounds converge_friction_bounds(StepProblem& problem, StepSolver& solver, const Parts& parts,
+                                         Solution& solution);
 
 }  // namespace cleave

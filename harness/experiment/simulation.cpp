@@ -153,13 +153,15 @@ Simulation::Measured Simulation::measure(std::span<Combination> combinations, co
 }
 
 void Simulation::finish_rows(Measured& measured, const OdeWorld& world, const Outcome& advance) {
-  const double drift_m = joint_drift_m(world);
+  if (measured.rows.empty()) return;
+  const double drift_m = joint_drift_m(world), potential_energy_j = world.potential_energy_j();
+  const std::string state_hash = hex(world.state_hash());
   for (std::size_t i = 0; i < measured.rows.size(); ++i) {
     StepRecord& row = measured.rows[i];
-    row.potential_energy_j = world.potential_energy_j();
+    row.potential_energy_j = potential_energy_j;
     row.joint_drift_m = drift_m;
     row.last_body_z_m = world.last_body_z_m();
-    row.state_hash = hex(world.state_hash());
+    row.state_hash = state_hash;
     if (!measured.outcomes[i].solved()) continue;
     row.velocity_spread_m_per_s =
         largest_difference(measured.outcomes[i].solution.velocity, advance.verdict.velocity);

@@ -1,5 +1,5 @@
 // From a step problem to the parts of one (partitioner, refiner): graph, growing, refining, each with its
-// time.
+// time. For a solver that takes a tree of parts, by recursion.
 #pragma once
 
 #include <memory>
@@ -8,6 +8,7 @@
 
 #include "harness/base/algorithm.h"
 #include "partition/body_graph.h"
+#include "partition/nested.h"
 #include "partition/partition.h"
 #include "partition/partitioner.h"
 #include "partition/refiner.h"
@@ -17,30 +18,43 @@ namespace cleave {
 
 struct Split {
   BodyGraph graph;
-  Partition before;  // as grown
-  Partition parts;   // as refined
+  Partition before;                 // as grown; by recursion, what it gives without refinement
+  Partition parts;                  // as refined; the leaves of a tree
+  std::vector<int> parent_of_part;  // the tree (solver/parts.h); empty: one level
+  // By recursion sums over all sets; whatever is not refining counts as partitioning.
   double graph_ms = 0, partition_ms = 0, refine_ms = 0;
 };
 
+// How bodies are split.
+struct SplitSetup {
+  Algorithm partitioner, refiner;
+  bool skip_small_islands = false;
+  std::optional<int> arity = {};  // children of a set, by recursion; none: one level
+};
+
+// What a solver says of it: its parameter `arity`, where it has one.
+std::optional<int> arity_of(const Algorithm& solver);
+
 class Splitter {
  public:
-  // Throws std::invalid_argument for --skip-small-islands with a partitioner that has no max-bodies.
-  Splitter(const Algorithm& partitioner, const Algorithm& refiner, bool skip_small_islands);
+  // Throws std::invalid_argument for --skip-small-islands with a partitioner that has no max-bodies, and as
+  // SetSplitter.
+  explicit Splitter(const SplitSetup& setup);
 
   // step: which one of its run the problem is. Throws CannotSplit where the partitioner does.
   Split run(const StepProblem& problem, std::optional<int> step = std::nullopt) const;
 
  private:
+  void run_once(Split& split) const;
+  void run_recursion(Split& split) const;
+  NestedPartition nest(const BodyGraph& graph, bool refines, double& refine_ms) const;
   Partition grow(const BodyGraph& graph) const;
   int most_bodies(const Partition& grown) const;
 
   std::unique_ptr<Partitioner> partitioner_;
   std::unique_ptr<Refiner> refiner_;
+  std::optional<SetSplitter> set_splitter_;  // where there is an arity
   bool skip_small_islands_;
 };
-
-// --skip-small-islands: the bodies of islands larger than max_bodies are partitioned as if the small
-// islands were not there; then every small island becomes one part, in order of its lowest body.
-Partition partition_large_islands(const BodyGraph& graph, const Partitioner& partitioner, int max_bodies);
 
 }  // namespace cleave

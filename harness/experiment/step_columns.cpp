@@ -13,15 +13,6 @@
 namespace cleave {
 namespace {
 
-std::string joined_scene_options(const RunOptions& options) {
-  std::vector<std::string> pairs;
-  for (const Parameter& parameter : scene_row(options.scene).parameters)
-    if (parameter.kind != Parameter::Kind::path)
-      pairs.push_back(parameter.name + "=" + options.scene.settings.text(parameter.name));
-  std::ranges::sort(pairs);
-  return pairs.empty() ? "-" : joined(pairs, ";");
-}
-
 void set_physics(const RunOptions& options, StepRecord& row) {
   row.dt_s = options.extract.h_s;
   row.cfm = options.extract.cfm;
@@ -36,6 +27,16 @@ int rows_of_kind(const StepProblem& problem, RowKind kind) {
 }
 
 }  // namespace
+
+std::string scene_options_cell(const std::vector<Parameter>& parameters,
+                               const std::function<std::string(const std::string& name)>& value_of) {
+  std::vector<std::string> pairs;
+  for (const Parameter& parameter : parameters)
+    if (parameter.kind != Parameter::Kind::path)
+      pairs.push_back(parameter.name + "=" + value_of(parameter.name));
+  std::ranges::sort(pairs);
+  return pairs.empty() ? "-" : joined(pairs, ";");
+}
 
 StepRecord solve_columns(const RunOptions& options) {
   StepRecord row;
@@ -56,7 +57,9 @@ StepRecord run_columns(const RunOptions& options) {
   row.mode = find_option("mode")->get(options);
   if (options.mode == RunMode::lockstep) row.advance = options.advance.text;
   row.steps = options.steps;
-  row.scene_options = joined_scene_options(options);
+  row.scene_options = scene_options_cell(scene_row(options.scene).parameters, [&](const std::string& name) {
+    return options.scene.settings.text(name);
+  });
   return row;
 }
 

@@ -46,11 +46,13 @@ std::span<const ParameterColumn> parameter_columns() {
 }
 
 void StepRecord::add_parameters(const Settings& settings) {
-  for (const auto& [name, value] : settings.values()) {
-    const std::string cell = value == "true" ? "1" : value == "false" ? "0" : value;
-    const auto [entry, is_new] = parameters.emplace(column_of(name), cell);
-    if (!is_new && entry->second != cell) entry->second += ";" + cell;
-  }
+  for (const auto& [name, value] : settings.values())
+    add_parameter(column_of(name), value == "true" ? "1" : value == "false" ? "0" : value);
+}
+
+void StepRecord::add_parameter(const std::string& column, const std::string& cell) {
+  const auto [entry, is_new] = parameters.emplace(column, cell);
+  if (!is_new && entry->second != cell) entry->second += ";" + cell;
 }
 
 void StepRecord::set_partition_before(const PartitionMetrics& metrics) {

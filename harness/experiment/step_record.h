@@ -114,6 +114,7 @@ struct StepRecord {
 
   // Adds the values of one algorithm. Where two of a row have a parameter with other values, both are named.
   void add_parameters(const Settings& settings);
+  void add_parameter(const std::string& column, const std::string& cell);
 
   // Parts of a row that are copied from one result each.
   void set_partition_before(const PartitionMetrics& metrics);

@@ -6,7 +6,8 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
-#include <string_view>
+
+#include "harness/files/write_all.h"
 
 namespace cleave {
 namespace {
@@ -25,19 +26,11 @@ CsvRecorder::CsvRecorder(std::filesystem::path path, const std::string& header) 
 
 CsvRecorder::~CsvRecorder() { ::close(file_); }
 
-// One write call for all lines. A short one happens only where the disk is full, and the next one says why; what
-// was written is then taken back so that no half line stays behind.
+// What was written before the disk was full is taken back, so that no half line stays behind.
 void CsvRecorder::append(const std::string& lines) {
   if (lines.empty()) return;
   const off_t begin = ::lseek(file_, 0, SEEK_CUR);
-  std::string_view left = lines;
-  while (!left.empty()) {
-    const ssize_t written = ::write(file_, left.data(), left.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) break;
-    left.remove_prefix(static_cast<std::size_t>(written));
-  }
-  if (left.empty()) return;
+  if (write_all(file_, lines)) return;
   const int error = errno;
   if (::ftruncate(file_, begin) == 0) ::lseek(file_, begin, SEEK_SET);
   fail(path_, error);

@@ -14,6 +14,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "harness/files/write_all.h"
+
 namespace cleave {
 namespace {
 
@@ -61,16 +63,6 @@ void enter_child(const ReadLimits& limits) {
   for (const int printed : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, printed);
 }
 
-bool send(int pipe, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t sent = ::write(pipe, bytes.data(), bytes.size());
-    if (sent < 0 && errno == EINTR) continue;
-    if (sent < 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(sent));
-  }
-  return true;
-}
-
 // What is sent ends the child: no exit handler of the parent runs in it.
 [[noreturn]] void serve(int pipe, const std::function<std::string()>& read) {
   char kind = kValue;
@@ -81,7 +73,7 @@ bool send(int pipe, std::string_view bytes) {
     kind = kError;
     bytes = error.what();
   }
-  const bool sent = send(pipe, {&kind, 1}) && send(pipe, bytes);
+  const bool sent = write_all(pipe, {&kind, 1}) && write_all(pipe, bytes);
   ::_exit(sent ? 0 : kChildFailed);
 }
 

@@ -62,7 +62,7 @@ std::vector<fs::path> files_of_earlier_work(const fs::path& directory) {
   std::vector<std::string> names;
   try {
     const StoredManifest manifest = read_manifest(directory / kManifestFile);
-    // A program before 0.3 did not say; of its files only this one was ever taken away.
+    // An older program did not say; of its files only this one was ever taken away.
     names = manifest.files.empty() ? std::vector<std::string>{"motion.h5"} : manifest.files;
   } catch (const std::invalid_argument&) {
     // None, or damaged: nothing is known, so nothing is deleted, and verify names what is left.

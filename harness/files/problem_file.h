@@ -41,6 +41,7 @@ struct StoredPartition {
   std::string partitioner, refiner;         // as named in the run
   std::vector<StoredParameter> parameters;  // what shaped it; see problem_file.h's list of attributes
   std::vector<int> part_of_body;            // (n)
+  std::vector<int> parent_of_part;          // the tree (solver/parts.h); empty: one level
 };
 
 struct ProblemFile {
@@ -62,7 +63,7 @@ struct ProblemFile {
 // Throws std::invalid_argument with one line that names the file, what is wrong in it (dataset, index, value)
 // and what is allowed: not a readable HDF5 file, wrong schema, missing parts, wrong types or shapes, values
 // that are no problem (find_contents_error), contents that its own hashes do not bear out. Impulses, velocities and part
-// ids are checked for type and shape only: whether they are right is for `cleave verify` to say. Damage of whatever kind
+// ids of one level are checked for type and shape only: whether they are right is for `cleave verify` to say. Damage of whatever kind
 // neither ends nor hangs the process: a child does the reading (isolated_read.h).
 ProblemFile read_problem_file(const std::filesystem::path& path);
 

@@ -1,5 +1,6 @@
 #include "harness/files/problem_file_check.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "harness/base/numbers.h"
 #include "harness/base/printable_text.h"
 #include "harness/files/problem_file_fields.h"
+#include "solver/parts.h"
 
 namespace cleave {
 namespace {
@@ -26,8 +28,9 @@ class Requirements {
   template <class Value, class Predicate>
   void add_each(const std::string& name, const std::vector<Value>& values, Predicate allowed,
                 const std::string& rule) {
-    for (std::size_t i = 0; i < values.size() && error_.empty(); ++i)
-      add(allowed(values[i]), name + "[" + std::to_string(i) + "]", values[i], rule);
+    const auto wrong = std::ranges::find_if_not(values, allowed);
+    if (wrong == values.end()) return;
+    add(false, name + "[" + std::to_string(wrong - values.begin()) + "]", *wrong, rule);
   }
   void add_text(const std::string& name, const std::string& text) {
     add(is_printable_utf8(text), name, text, "printable UTF-8 text without control characters");
@@ -99,6 +102,16 @@ void require_texts(const ProblemFile& file, Requirements& require) {
   }
 }
 
+// Of a tree; the ids of one level are for `verify`.
+std::string find_parts_error(const ProblemFile& file) {
+  for (const auto& [label, partition] : file.partitions) {
+    const Parts parts(partition.part_of_body, partition.parent_of_part);
+    const std::string error = PartsCheck().find_error(parts, file.problem.body_count());
+    if (!error.empty()) return "partition/" + printable(label) + "/" + error;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string find_contents_error(const ProblemFile& file) {
@@ -108,7 +121,7 @@ std::string find_contents_error(const ProblemFile& file) {
     if (std::string error = find_problem_error(file.problem); !error.empty()) return error;
   if (file.shapes) require_shapes(*file.shapes, file.problem.body_count(), require);
   require_texts(file, require);
-  return require.error();
+  return require.error().empty() ? find_parts_error(file) : require.error();
 }
 
 }  // namespace cleave

@@ -81,6 +81,7 @@ std::string solutions_hash(const ProblemFile& file) {
       hash("kind", parameter.kind);
     }
     hash("part_of_body", partition.part_of_body);
+    if (!partition.parent_of_part.empty()) hash("parent_of_part", partition.parent_of_part);
   }
   return hash.text();
 }

@@ -98,6 +98,7 @@ template <class Partition, class Stream>
 void walk_partition(Partition& partition, Stream& stream) {
   visit_partition_attributes(partition, [&](const char*, auto& value) { stream(value); });
   stream(partition.part_of_body);
+  stream(partition.parent_of_part);
 }
 
 template <class Packed, class Stream>

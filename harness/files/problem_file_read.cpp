@@ -117,6 +117,10 @@ StoredPartition read_partition(const Hdf5Reader& reader, std::size_t n) {
     partition.parameters.push_back({name, reader.attribute_kind(name), reader.attribute_text(name)});
   }
   reader.array("part_of_body", {n}, partition.part_of_body);
+  if (reader.has("parent_of_part")) {
+    const std::size_t nodes = read_length(reader, "parent_of_part", 2 * kMostBodies);
+    reader.array("parent_of_part", {nodes}, partition.parent_of_part);
+  }
   return partition;
 }
 

@@ -39,6 +39,8 @@ void write_partition(const Hdf5Writer& group, const StoredPartition& partition) 
                              [&](const char* name, const auto& value) { group.attribute(name, value); });
   for (const StoredParameter& parameter : partition.parameters) write_parameter(group, parameter);
   group.array("part_of_body", {partition.part_of_body.size()}, partition.part_of_body);
+  if (!partition.parent_of_part.empty())
+    group.array("parent_of_part", {partition.parent_of_part.size()}, partition.parent_of_part);
 }
 
 void write_contents(const Hdf5Writer& writer, const ProblemFile& file) {

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "harness/files/write_all.h"
+
 namespace cleave {
 namespace {
 
@@ -25,15 +27,7 @@ class Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
 
   bool is_open() const { return value_ >= 0; }
-  bool write(std::string_view bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t written = ::write(value_, bytes.data(), bytes.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) return false;
-      bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-    return true;
-  }
+  bool write(std::string_view bytes) const { return write_all(value_, bytes); }
   // All bytes, as far as they can be read.
   std::string read() const {
     std::string bytes;

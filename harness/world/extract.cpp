@@ -126,6 +126,8 @@ StepProblem extract(const OdeWorld& world, std::span<const ContactPoint> contact
   require_valid(options);
   StepProblem problem;
   problem.h_s = options.h_s;
+  reserve_rows(contacts.size() * (has_friction_rows(options) ? 3 : 1) + 6 * world.content().joints.size(),
+               problem);
   append_body_terms(world, options.h_s, problem);
   append_joint_rows(world, options.h_s, options.erp, options.cfm, memory, problem);
   const int joints = static_cast<int>(world.content().joints.size());

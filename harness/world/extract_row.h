@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 
 #include "solver/step_problem.h"
@@ -23,6 +24,22 @@ struct ExtractedRow {
   std::array<double, 3> point_m{};
   double warm_impulse = 0;
 };
+
+// Room for so many rows: a problem grows to hundreds of megabytes, which are not to be moved on the way.
+inline void reserve_rows(std::size_t rows, StepProblem& problem) {
+  problem.row_body.reserve(2 * rows);
+  problem.jacobian.reserve(12 * rows);
+  problem.rhs.reserve(rows);
+  problem.compliance.reserve(rows);
+  problem.lower.reserve(rows);
+  problem.upper.reserve(rows);
+  problem.row_kind.reserve(rows);
+  problem.friction_row.reserve(rows);
+  problem.friction_coefficient.reserve(rows);
+  problem.row_constraint.reserve(rows);
+  problem.contact_point.reserve(3 * rows);
+  problem.warm_impulse.reserve(rows);
+}
 
 // Appends the row to every row array of the problem and returns its index.
 inline int append_row(const ExtractedRow& row, StepProblem& problem) {

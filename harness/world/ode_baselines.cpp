@@ -141,7 +141,7 @@ class OdeSolver : public StepSolver {
     return find_set_refusal("solver", options_.quick ? "ode-quickstep" : "ode-step", problem);
   }
 
-  SolveSummary do_solve(const StepProblem& problem, std::span<const int>, Solution& solution) override {
+  SolveSummary do_solve(const StepProblem& problem, const Parts&, Solution& solution) override {
     SolveSummary summary;
     summary.strategy = options_.quick ? "ode-quickstep" : "ode-step";
     summary.kernel = "-";

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "harness/base/hash.h"
+#include "harness/world/overlapping_boxes.h"
 
 namespace cleave {
 namespace {
@@ -58,17 +59,45 @@ struct GeomPair {
   bool operator<(const GeomPair& other) const { return key() < other.key(); }
 };
 
-void collect_pair(void* pairs, dGeomID first, dGeomID second) {
+AxisAlignedBox bounding_box(dGeomID geom) {
+  AxisAlignedBox box;
+  dGeomGetAABB(geom, box.data());
+  if (std::ranges::any_of(box, [](double x) { return std::isnan(x); }))
+    throw std::runtime_error("geom " + std::to_string(index_of(geom)) + " is not at a finite place");
+  return box;
+}
+
+// What ODE's spaces ask of a pair: both switched on, and one of them meant to meet the other.
+bool are_set_to_collide(dGeomID a, dGeomID b) {
+  if (!dGeomIsEnabled(a) || !dGeomIsEnabled(b)) return false;
+  return (dGeomGetCategoryBits(a) & dGeomGetCollideBits(b)) != 0 ||
+         (dGeomGetCategoryBits(b) & dGeomGetCollideBits(a)) != 0;
+}
+
+bool can_touch(dGeomID first, dGeomID second) {
   const dBodyID first_body = dGeomGetBody(first), second_body = dGeomGetBody(second);
-  if (first_body == second_body) return;  // parts of one body, or both static
+  if (first_body == second_body) return false;  // parts of one body, or both static
+  if (!are_set_to_collide(first, second)) return false;
   const bool both_dynamic = first_body != nullptr && second_body != nullptr;
-  if (both_dynamic && dAreConnectedExcluding(first_body, second_body, dJointTypeContact)) return;
-  const auto [low_body, high_body] = std::minmax({index_of(first_body), index_of(second_body)});
-  const auto [low_geom, high_geom] = std::minmax({index_of(first), index_of(second)});
-  assert(low_geom >= 0);
-  const GeomPair pair = low_body < 0 ? GeomPair{high_body, -1, low_geom, high_geom}
-                                     : GeomPair{low_body, high_body, low_geom, high_geom};
-  static_cast<std::vector<GeomPair>*>(pairs)->push_back(pair);
+  return !both_dynamic || !dAreConnectedExcluding(first_body, second_body, dJointTypeContact);
+}
+
+GeomPair make_pair(dGeomID low, dGeomID high) {
+  const auto [low_body, high_body] = std::minmax({index_of(dGeomGetBody(low)), index_of(dGeomGetBody(high))});
+  return low_body < 0 ? GeomPair{high_body, -1, index_of(low), index_of(high)}
+                      : GeomPair{low_body, high_body, index_of(low), index_of(high)};
+}
+
+// Sorted; geoms by their index.
+std::vector<GeomPair> find_near_pairs(std::span<const dGeomID> geoms) {
+  std::vector<AxisAlignedBox> boxes;
+  boxes.reserve(geoms.size());
+  for (const dGeomID geom : geoms) boxes.push_back(bounding_box(geom));
+  std::vector<GeomPair> pairs;
+  for (const auto& [low, high] : overlapping_boxes(boxes))
+    if (can_touch(geoms[low], geoms[high])) pairs.push_back(make_pair(geoms[low], geoms[high]));
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
 }
 
 ContactPoint make_contact(const GeomPair& pair, bool lower_geom_is_a, const dContactGeom& found) {
@@ -117,8 +146,7 @@ OdeWorld::OdeWorld(Recipe recipe, double gravity_m_per_s2, bool gyroscopic, std:
   initialise_ode();
   dRandSetSeed(static_cast<std::uint32_t>(seed ^ (seed >> 32)));
   world_.reset(dWorldCreate());
-  // Half the time of a hash space on our scenes, with the same contacts.
-  space_.reset(dSweepAndPruneSpaceCreate(nullptr, dSAP_AXES_XYZ));
+  space_.reset(dSimpleSpaceCreate(nullptr));  // it holds the geoms; near pairs are found by ourselves
   dWorldSetGravity(world_.get(), 0, 0, -gravity_m_per_s2);
   dWorldSetAutoDisableFlag(world_.get(), 0);
   if (preset) {
@@ -156,10 +184,7 @@ std::unique_ptr<OdeWorld> OdeWorld::rebuilt(double erp, double cfm) const {
 std::vector<ContactPoint> OdeWorld::collide(int contact_cap, int* cap_hits) {
   if (contact_cap < 1 || contact_cap > 65535)
     throw std::invalid_argument("contact cap: " + std::to_string(contact_cap) + " is not in [1, 65535]");
-  std::vector<GeomPair> pairs;
-  dSpaceCollide(space_.get(), &pairs, collect_pair);
-  std::sort(pairs.begin(), pairs.end());
-
+  const std::vector<GeomPair> pairs = find_near_pairs(content_.geoms);
   std::vector<ContactPoint> contacts;
   std::vector<dContactGeom> found(contact_cap);
   int hits = 0;

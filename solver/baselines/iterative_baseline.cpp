@@ -8,8 +8,7 @@ std::string IterativeBaseline::refuse_set(const StepProblem& problem) {
   return find_set_refusal("solver", name_, problem);
 }
 
-SolveSummary IterativeBaseline::do_solve(const StepProblem& problem, std::span<const int>,
-                                         Solution& solution) {
+SolveSummary IterativeBaseline::do_solve(const StepProblem& problem, const Parts&, Solution& solution) {
   SolveSummary summary;
   summary.strategy = name_;
   summary.kernel = "-";

@@ -28,8 +28,7 @@ class IterativeBaseline : public StepSolver {
   virtual int iterate(const PreparedStep& step, Solution& solution) = 0;
 
   std::string refuse_set(const StepProblem& problem) final;
-  SolveSummary do_solve(const StepProblem& problem, std::span<const int> part_of_body,
-                        Solution& solution) final;
+  SolveSummary do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) final;
 
   std::string_view name_;
   const std::atomic<bool>* stop_;

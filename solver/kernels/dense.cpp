@@ -13,14 +13,14 @@ namespace {
 
 class DenseKernel : public Kernel {
  public:
-  void analyze(const PreparedStep& step, std::span<const int>, ParallelTasks& tasks) override {
+  void analyze(const PreparedStep& step, const Parts&, ParallelTasks& tasks) override {
     StageTimer timer(tasks.clock(), Stage::analyze);
     step_ = &step;
     if (mass_.rows() != 6 * step.body_count() || jacobian_.rows() != step.row_count()) release();
   }
 
-  bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override {
-    analyze(step, part_of_body, tasks);  // no pattern, so every step fits
+  bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override {
+    analyze(step, parts, tasks);  // no pattern, so every step fits
     return true;
   }
 

@@ -13,6 +13,7 @@
 
 #include "harness/base/parameter.h"
 #include "solver/parallel_tasks.h"
+#include "solver/parts.h"
 #include "solver/prepared_step.h"
 #include "solver/row_weights.h"
 
@@ -22,13 +23,13 @@ class Kernel {
  public:
   virtual ~Kernel() = default;
 
-  // Symbolic analysis of the pattern; step must outlive the kernel's use. part_of_body: (n), unused by
+  // Symbolic analysis of the pattern; step must outlive the kernel's use. parts: unused by
   // kernels that do not split.
-  virtual void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) = 0;
+  virtual void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) = 0;
 
   // Instead of analyze, for the bodies and parts analysed last but other rows: true where every pair of
   // bodies that shares a row has its place in the analysed pattern, whose order is then kept. False: analyze.
-  virtual bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) = 0;
+  virtual bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) = 0;
 
   // Numeric factorisation for D, diagonal or with blocks. False when the matrix is not positive definite to
   // working precision.
@@ -49,5 +50,6 @@ std::unique_ptr<Kernel> make_dense_kernel(const Settings& settings);
 std::unique_ptr<Kernel> make_monolithic_kernel(const Settings& settings);
 std::unique_ptr<Kernel> make_schur_rows_kernel(const Settings& settings);
 std::unique_ptr<Kernel> make_schur_bodies_kernel(const Settings& settings);
+std::unique_ptr<Kernel> make_schur_nested_kernel(const Settings& settings);
 
 }  // namespace cleave

@@ -38,15 +38,14 @@ struct Part {
   std::vector<double> velocity;    // L^-1 g, later dv, by position
   std::vector<double> coupling;    // -Y^T L^-1 g (ld), later -lambda_c
   std::vector<double> by_body;
-  std::vector<double> scratch;
   int ld = 0;
   bool factored = false;
 };
 
 class SchurRowsKernel : public Kernel {
  public:
-  void analyze(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
-  bool rebind(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks) override;
+  void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
+  bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
   bool factor(const RowWeights& weights, ParallelTasks& tasks) override;
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override;
@@ -55,7 +54,7 @@ class SchurRowsKernel : public Kernel {
   double interface_mflop() const override { return interface_.mflop(); }
 
  private:
-  void split(const PreparedStep& step, std::span<const int> part_of_body, ParallelTasks& tasks);
+  void split(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks);
   void order_cut_rows(int part);
   void number_active_rows();
   void choose_active(int part);
@@ -76,18 +75,16 @@ class SchurRowsKernel : public Kernel {
   std::vector<double> lambda_;
 };
 
-void SchurRowsKernel::split(const PreparedStep& step, std::span<const int> part_of_body,
-                            ParallelTasks& tasks) {
+void SchurRowsKernel::split(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
   step_ = &step;
-  split_.split(step, part_of_body);
+  split_.split(step, parts.part_of_body);
   if (static_cast<int>(parts_.size()) < split_.part_count) parts_.resize(split_.part_count);
   interface_row_.resize(split_.cut_rows.size());
 }
 
-void SchurRowsKernel::analyze(const PreparedStep& step, std::span<const int> part_of_body,
-                              ParallelTasks& tasks) {
-  split(step, part_of_body, tasks);
+void SchurRowsKernel::analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
+  split(step, parts, tasks);
   tasks.run(Stage::analyze, split_.part_count, [&](int i) {
     const PartRows& rows = split_.parts[i];
     parts_[i].matrix.analyze(step, rows.bodies, split_.local_of_body, rows.groups);
@@ -96,9 +93,8 @@ void SchurRowsKernel::analyze(const PreparedStep& step, std::span<const int> par
 }
 
 // Every part decides for itself.
-bool SchurRowsKernel::rebind(const PreparedStep& step, std::span<const int> part_of_body,
-                             ParallelTasks& tasks) {
-  split(step, part_of_body, tasks);
+bool SchurRowsKernel::rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
+  split(step, parts, tasks);
   tasks.run(Stage::analyze, split_.part_count, [&](int i) {
     const PartRows& rows = split_.parts[i];
     if (!parts_[i].matrix.rebind(step, split_.local_of_body, rows.groups)) {
@@ -217,8 +213,8 @@ bool SchurRowsKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
     StageTimer timer(tasks.clock(), Stage::assemble);
     rows_.set(step_->problem(), weights);
   }
-  tasks.run(Stage::assemble, count, [&](int i) { parts_[i].matrix.assemble(rows_, 0); });
-  tasks.run(Stage::factor_local, count, [&](int i) { parts_[i].factored = parts_[i].matrix.factor(0); });
+  tasks.run(Stage::assemble, count, [&](int i) { parts_[i].matrix.assemble(rows_); });
+  tasks.run(Stage::factor_local, count, [&](int i) { parts_[i].factored = parts_[i].matrix.factor(); });
   for (int i = 0; i < count; ++i) {
     if (!parts_[i].factored) return false;
   }
@@ -268,7 +264,7 @@ void SchurRowsKernel::reduce(int i, std::span<const double> f_v, std::span<const
     for (int c = 0; c < 6; ++c) b[c] += sum[6 + c];
   }
   part.matrix.cholesky().to_positions(part.by_body, part.velocity);
-  part.matrix.cholesky().forward(0, part.velocity.data(), nullptr, part.scratch);
+  part.matrix.cholesky().forward(part.velocity.data());
   part.coupling.assign(part.ld, 0.0);
   subtract_matrix_vector(part.ld, static_cast<int>(part.velocity.size()), part.y.data(), part.ld,
                          part.velocity.data(), part.coupling.data());
@@ -285,7 +281,7 @@ void SchurRowsKernel::expand(int i, std::span<const double> f_r, std::span<doubl
     part.coupling[k] = -lambda_[part.interface_row[k]];
   subtract_transpose_vector(part.ld, static_cast<int>(part.velocity.size()), part.y.data(), part.ld,
                             part.coupling.data(), part.velocity.data());
-  part.matrix.cholesky().backward(0, part.velocity.data(), part.scratch);
+  part.matrix.cholesky().backward(part.velocity.data());
   part.matrix.cholesky().to_nodes(part.velocity, part.by_body);
   for (std::size_t k = 0; k < rows.bodies.size(); ++k) {
     std::copy_n(part.by_body.data() + 6 * k, 6, dv.data() + 6 * rows.bodies[k]);

@@ -115,84 +115,66 @@ void DenseCholesky::update(int step, int row, int column) {
   }
 }
 
-// The operations in an order in which each comes after all that it needs. The block that the next step begins
-// with comes first in every step, and its factorisation next, so that it is long done when the solves below
-// it, last in the step, are reached.
-void DenseCholesky::list_operations() {
-  if (listed_blocks_ == blocks_) return;
-  listed_blocks_ = -1;
-  operations_.clear();
-  for (int step = -1; step < blocks_ - 1; ++step) {
+// The operations in an order in which each comes after all that it needs, and what it needs: the last operation on its
+// own block before it, and those that finished the blocks it reads. The block that the next step begins with comes first
+// in every step, and its factorisation next, so that it is long done when the solves below it, last in the step, are
+// reached.
+DenseCholesky::Schedule::Schedule(int blocks) : last_on_block(blocks * (blocks + 1) / 2, -1) {
+  for (int step = -1; step < blocks - 1; ++step) {
     const int next = step + 1;
-    if (step >= 0) operations_.push_back({step, next, next});
-    operations_.push_back({next, next, next});
-    for (int column = next; column < blocks_ && step >= 0; ++column) {
-      for (int row = std::max(column, next + 1); row < blocks_; ++row)
-        operations_.push_back({step, row, column});
+    if (step >= 0) list({step, next, next});
+    list({next, next, next});
+    for (int column = next; column < blocks && step >= 0; ++column) {
+      for (int row = std::max(column, next + 1); row < blocks; ++row) list({step, row, column});
     }
-    for (int row = next + 1; row < blocks_; ++row) operations_.push_back({next, row, next});
+    for (int row = next + 1; row < blocks; ++row) list({next, row, next});
   }
-  const int triangle = blocks_ * (blocks_ + 1) / 2;
-  if (triangle > done_capacity_) {
-    done_capacity_ = 0;
-    done_ = std::make_unique<std::atomic<int>[]>(triangle);
-    done_capacity_ = triangle;
-  }
-  listed_blocks_ = blocks_;
+  graph.build(static_cast<int>(operations.size()), waits, places);
 }
 
-// On several threads: the operations in the order of the list, each when what it needs is there. A block of
-// column c has seen c updates before it is final with its own solve or factorisation.
-bool DenseCholesky::factor_with_look_ahead(ParallelTasks& tasks) {
-  list_operations();
-  for (int k = 0; k < blocks_ * (blocks_ + 1) / 2; ++k) done_[k].store(0, std::memory_order_relaxed);
-  std::atomic<bool> positive = true, stopped = false;
-  tasks.run(Stage::factor_interface, static_cast<int>(operations_.size()), [&](int index) {
-    const auto [step, row, column] = operations_[index];
-    const bool is_update = column > step, is_diagonal = row == step;
-    if (!is_diagonal) wait_until(done(is_update ? row : step, step), step + 1);
-    if (is_update) wait_until(done(column, step), step + 1);
-    wait_until(done(row, column), step);
-    // A task that throws would leave others waiting for what it does.
-    if (is_stop_asked(tasks.stop())) stopped = true;
-    if (positive && !stopped) {
-      if (is_update) {
-        update(step, row, column);
-      } else if (!is_diagonal) {
-        solve_below(step, row);
-      } else if (!factor_diagonal(step)) {
-        positive = false;
-      }
-    }
-    raise(done(row, column));
-  });
-  if (stopped) throw SolveStopped();
-  return positive;
+void DenseCholesky::Schedule::list(const Operation& operation) {
+  const auto [step, row, column] = operation;
+  const int index = static_cast<int>(operations.size());
+  const auto last = [this](int r, int c) -> int& { return last_on_block[r * (r + 1) / 2 + c]; };
+  const auto wait_for = [&](int earlier) {
+    if (earlier >= 0) waits.emplace_back(earlier, index);
+  };
+  wait_for(last(row, column));
+  if (column > step) {
+    wait_for(last(row, step));
+    if (row != column) wait_for(last(column, step));
+  } else if (row > step) {
+    wait_for(last(step, step));
+  }
+  last(row, column) = index;
+  operations.push_back(operation);
+  // Rows of blocks go round the threads, whatever their number: the fractions of multiples of the golden ratio.
+  constexpr double kGoldenRatio = 0.6180339887498949;
+  places.push_back(row * kGoldenRatio - std::floor(row * kGoldenRatio));
 }
 
-// On one thread: step by step, in sets of independent tasks, whose times the model of more workers is made
-// of.
-bool DenseCholesky::factor_in_steps(ParallelTasks& tasks) {
-  for (int step = 0; step < blocks_; ++step) {
-    check_stop(tasks.stop());
-    {
-      StageTimer timer(tasks.clock(), Stage::factor_interface);
-      if (!factor_diagonal(step)) return false;
-    }
-    const int below = blocks_ - step - 1;
-    tasks.run(Stage::factor_interface, below, [&](int t) { solve_below(step, step + 1 + t); });
-    // Blocks (i, j), step < j <= i, numbered down the columns of the triangle.
-    tasks.run(Stage::factor_interface, below * (below + 1) / 2, [&](int t) {
-      int column = 0;
-      for (int left = below; t >= left; --left) t -= left, ++column;
-      update(step, step + 1 + column + t, step + 1 + column);
-    });
-  }
-  return true;
+const DenseCholesky::Schedule& DenseCholesky::schedule() {
+  if (blocks_ >= static_cast<int>(schedules_.size())) schedules_.resize(blocks_ + 1);
+  if (schedules_[blocks_] == nullptr) schedules_[blocks_] = std::make_unique<Schedule>(blocks_);
+  return *schedules_[blocks_];
 }
 
 bool DenseCholesky::factor(ParallelTasks& tasks) {
-  return tasks.threads() == 1 ? factor_in_steps(tasks) : factor_with_look_ahead(tasks);
+  const Schedule& schedule = this->schedule();
+  std::atomic<bool> positive = true;
+  tasks.run(Stage::factor_interface, schedule.graph, [&](int index) {
+    const auto [step, row, column] = schedule.operations[index];
+    check_stop(tasks.stop());
+    if (!positive) return;
+    if (column > step) {
+      update(step, row, column);
+    } else if (row > step) {
+      solve_below(step, row);
+    } else if (!factor_diagonal(step)) {
+      positive = false;
+    }
+  });
+  return positive;
 }
 
 void DenseCholesky::solve(std::span<double> x) {

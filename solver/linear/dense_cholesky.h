@@ -68,10 +68,18 @@ class DenseCholesky {
   struct Operation {
     int step, row, column;
   };
-  void list_operations();
-  bool factor_in_steps(ParallelTasks& tasks);
-  bool factor_with_look_ahead(ParallelTasks& tasks);
-  std::atomic<int>& done(int row, int column) { return done_[row * (row + 1) / 2 + column]; }
+  // Of all sizes with the same number of blocks; stays once it is there, as the clock of a solve refers to it.
+  struct Schedule {
+    explicit Schedule(int blocks);
+    void list(const Operation& operation);
+
+    std::vector<Operation> operations;
+    TaskGraph graph;
+    std::vector<std::pair<int, int>> waits;
+    std::vector<double> places;
+    std::vector<int> last_on_block;  // of the operations so far, by place in the triangle
+  };
+  const Schedule& schedule();
 
   bool factor_diagonal(int step);
   void solve_below(int step, int row);
@@ -81,11 +89,8 @@ class DenseCholesky {
   int size_ = 0, panels_ = 0, blocks_ = 0;
   std::size_t capacity_ = 0;
   std::unique_ptr<double[], FreeAligned> entries_;
-  std::vector<double> padded_;  // a right-hand side and zeros up to a whole panel
-  std::vector<Operation> operations_;
-  int listed_blocks_ = -1;                    // what operations_ is for
-  std::unique_ptr<std::atomic<int>[]> done_;  // operations that each block of the triangle has seen
-  int done_capacity_ = 0;
+  std::vector<double> padded_;                        // a right-hand side and zeros up to a whole panel
+  std::vector<std::unique_ptr<Schedule>> schedules_;  // by number of blocks
 };
 
 }  // namespace cleave

@@ -15,7 +15,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <atomic>
+#include <barrier>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -110,13 +110,12 @@ void time_side_by_side(benchmark::State& state, int size) {
   DenseCholesky cholesky[2];
   for (auto _ : state) {
     double seconds[2] = {};
-    std::atomic<int> ready = 0;
+    std::barrier<> ready(2);
     const auto run = [&](int k) {
       StageClock clock;
       ParallelTasks tasks(clock, 1);
       fill(cholesky[k], size, tasks);
-      raise(ready);
-      wait_until(ready, 2);
+      ready.arrive_and_wait();
       const auto begin = StageClock::Clock::now();
       if (!cholesky[k].factor(tasks)) throw std::runtime_error("the matrix is not positive definite");
       seconds[k] = std::chrono::duration<double>(StageClock::Clock::now() - begin).count();

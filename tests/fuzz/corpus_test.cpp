@@ -74,7 +74,7 @@ TEST(OptionChanges, GiveNumbersToOptionsThatTakeThem) {
 
 // Else what is edited is refused whatever the edit is, and the target tests nothing.
 TEST(SoundImages, AreRead) {
-  for (const std::string recipe : {std::string(1, '\0'), std::string(1, '\1')}) {
+  for (const std::string& recipe : {std::string(1, '\0'), std::string(1, '\1')}) {
     const ScratchFile file(problem_image(recipe));
     EXPECT_EQ(read_problem_file(file.path()).problem.body_count(), 3);
   }

@@ -403,7 +403,7 @@ TEST(Options, GivenValuesStandInTheRows) {
       {"mode", "lockstep"},
       {"advance", "monolithic"},
       {"steps", "2"},
-      {"scene_options", "bodies=2;mass=100;rock-shape=sphere"},
+      {"scene_options", "bodies=2;depth=3;mass=100;rock-shape=sphere"},
       {"schema_version", kStepsSchema}};
   for (const auto& [column, value] : expected) EXPECT_EQ(table.at(0, column), value) << column;
   // Each row has what its own algorithms have.

@@ -51,7 +51,7 @@ class OracleSolver : public StepSolver {
   bool uses_partition() const override { return false; }
 
  private:
-  SolveSummary do_solve(const StepProblem& problem, std::span<const int>, Solution& solution) override {
+  SolveSummary do_solve(const StepProblem& problem, const Parts&, Solution& solution) override {
     const OracleSolution exact = solve_exactly(problem);
     EXPECT_LE(exact.residual, 1e-10);
     solution.impulse.assign(exact.impulse.begin(), exact.impulse.end());
@@ -233,7 +233,7 @@ class JumpingSolver : public StepSolver {
   int solves = 0;
 
  private:
-  SolveSummary do_solve(const StepProblem& problem, std::span<const int>, Solution& solution) override {
+  SolveSummary do_solve(const StepProblem& problem, const Parts&, Solution& solution) override {
     solution.impulse.assign(problem.row_count(), ++solves % 2 ? 1.0 : 2.0);
     solution.velocity.assign(problem.free_velocity.size(), 0.0);
     SolveSummary summary;

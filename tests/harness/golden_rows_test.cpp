@@ -54,6 +54,7 @@ std::vector<Case> all_cases() {
       {"log_tower", {"--scene", "log_tower", "--layers", "6", "--steps", "90"}},
       {"rock_pile", {"--scene", "rock_pile", "--bodies", "40", "--steps", "120"}},
       {"large_rock_pile", {"--scene", "large_rock_pile", "--bodies", "50", "--steps", "120"}},
+      {"silo", {"--scene", "silo", "--bodies", "30", "--steps", "30"}},
       {"stiff_pile", {"--scene", "rock_pile", "--bodies", "30", "--steps", "90", "--cfm", "1e-10"}},
   };
   for (const ShippedScene& scene : shipped_scenes()) {

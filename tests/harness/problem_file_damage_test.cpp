@@ -220,15 +220,6 @@ std::vector<Damage> damaged_structure() {
   return list;
 }
 
-std::string error_of(const fs::path& path) {
-  try {
-    read_problem_file(path);
-    return "";
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-}
-
 class DamagedProblemFile : public ::testing::TestWithParam<Damage> {};
 
 TEST_P(DamagedProblemFile, IsRefusedByName) {

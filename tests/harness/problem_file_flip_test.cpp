@@ -19,15 +19,6 @@ void write_bytes(const fs::path& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-std::string error_of(const fs::path& path) {
-  try {
-    read_problem_file(path);
-    return "";
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-}
-
 class FlippedProblemFile : public ::testing::Test {
  protected:
   void SetUp() override {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -97,7 +98,7 @@ inline ProblemFile sample_file(int bodies = 5, std::uint64_t seed = 1) {
   solution.impulse = random.numbers(file.problem.row_count());
   solution.velocity = random.numbers(6 * bodies);
   file.solutions["mix+fm+schur"] = solution;
-  StoredPartition partition{"mix", "fm", {}, std::vector<int>(bodies, 0)};
+  StoredPartition partition{"mix", "fm", {}, std::vector<int>(bodies, 0), {}};
   using Kind = Parameter::Kind;
   partition.parameters = {{"as_printed", Kind::flag, "true"},
                           {"edge_weight", Kind::word, "constraints"},
@@ -132,6 +133,16 @@ inline void write_unchecked(
   }
   instead(writer, "");  // whatever else there shall be
   writer.close();
+}
+
+// What reading the file says; empty where it is read.
+inline std::string error_of(const std::filesystem::path& path) {
+  try {
+    read_problem_file(path);
+    return "";
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
 }
 
 template <class Number>

@@ -87,7 +87,7 @@ std::vector<NamedParts> partitions_of(const StepProblem& problem, int max_bodies
     for (const std::string& refiner : refiners)
       all.push_back(
           {partitioner.name + "+" + refiner,
-           Splitter(partitioner, read_named("refiner", refiner), false).run(problem).parts.part_of_body});
+           Splitter({partitioner, read_named("refiner", refiner)}).run(problem).parts.part_of_body});
   std::vector<int> own(problem.body_count());
   for (std::size_t body = 0; body < own.size(); ++body) own[body] = static_cast<int>(body);
   all.push_back({"own", own});

@@ -11,6 +11,7 @@
 
 #include "harness/base/names.h"
 #include "harness/experiment/run_summary.h"
+#include "harness/experiment/small_islands.h"
 #include "harness/experiment/splitter.h"
 #include "partition/registry.h"
 #include "tests/harness/machine_columns.h"
@@ -72,6 +73,7 @@ TEST(Smoke, EverySceneRunsSmallWithAllCombinations) {
       {"log_tower", {"--layers", "4", "--logs", "2"}},
       {"rock_pile", {"--bodies", "12"}},
       {"large_rock_pile", {"--bodies", "12"}},
+      {"silo", {"--bodies", "12"}},
   };
   for (const ShippedScene& scene : shipped_scenes()) {
     const auto sizes = small.find(scene.name);

@@ -133,6 +133,43 @@ TEST(BodyGraph, refuses_weights_that_would_overflow) {
   EXPECT_THROW((Bodies{"", {1.0, 1.0}, {{0, 1, kMost}, {1, 0, 1}}}.graph()), std::invalid_argument);
 }
 
+// The bodies of a set and the links among them, in their order.
+Bodies only(const Bodies& bodies, const std::vector<int>& set_of_body, int set) {
+  Bodies kept{bodies.family, {}, {}};
+  std::vector<int> index(bodies.count(), -1);
+  for (int body = 0; body < bodies.count(); ++body) {
+    if (set_of_body[body] != set) continue;
+    index[body] = kept.count();
+    kept.mass_kg.push_back(bodies.mass_kg[body]);
+  }
+  for (const ConstraintLink& link : bodies.links)
+    if (link.body_a >= 0 && link.body_b >= 0 && index[link.body_a] >= 0 && index[link.body_b] >= 0)
+      kept.links.push_back({index[link.body_a], index[link.body_b], link.rows});
+  return kept;
+}
+
+TEST(InducedGraphs, are_those_of_the_links_among_their_bodies) {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const Bodies bodies = random_bodies(seed);
+    Random random(seed);
+    const int sets = random.integer(1, 5);
+    std::vector<int> set_of_body;
+    for (int body = 0; body < bodies.count(); ++body) set_of_body.push_back(random.integer(-1, sets - 1));
+    const std::vector<BodyGraph> graphs = bodies.graph().induced(set_of_body, sets);
+    ASSERT_EQ(static_cast<int>(graphs.size()), sets);
+    for (int set = 0; set < sets; ++set) {
+      const BodyGraph expected = only(bodies, set_of_body, set).graph();
+      ASSERT_EQ(graphs[set].body_count(), expected.body_count()) << "seed " << seed;
+      for (const EdgeWeight unit : kUnits)
+        ASSERT_EQ(stored_weights(graphs[set], unit), stored_weights(expected, unit)) << "seed " << seed;
+      for (int body = 0; body < expected.body_count(); ++body) {
+        ASSERT_EQ(graphs[set].mass_kg(body), expected.mass_kg(body)) << "seed " << seed;
+        ASSERT_TRUE(std::ranges::equal(graphs[set].neighbours(body), expected.neighbours(body)));
+      }
+    }
+  }
+}
+
 TEST(CountIslands, agrees_with_union_find) {
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const Bodies bodies = random_bodies(seed);

@@ -15,6 +15,7 @@ RUNS = {
     "log_tower": (70, "--layers", "4", "--logs", "3"),
     "rock_pile": (80, "--bodies", "30"),
     "large_rock_pile": (80, "--bodies", "40", "--rock-shape", "convex"),
+    "silo": (10, "--bodies", "20"),
     "ladder_stack": (10, "--copies", "2"),
     "ladder_heavy_top": (10,),
     "ladder_alternating": (10,),

@@ -24,7 +24,11 @@ inline std::vector<std::string> bad_values(const Parameter& parameter) {
 inline std::vector<std::string> extreme_values(const Parameter& parameter) {
   if (parameter.kind == Parameter::Kind::path) return {};
   if (parameter.kind == Parameter::Kind::word) return parameter.words;
-  return {number_text(parameter.range.min), number_text(parameter.range.max)};
+  const auto text = [&](double end) {
+    return parameter.kind == Parameter::Kind::integer ? std::to_string(static_cast<long>(end))
+                                                      : number_text(end);
+  };
+  return {text(parameter.range.min), text(parameter.range.max)};
 }
 
 }  // namespace cleave

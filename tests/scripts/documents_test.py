@@ -40,14 +40,17 @@ USED_BY = {
 }
 
 
-def package_lines():
-    """Of every list: what all presets need, and what single ones need beside."""
-    files = sorted((SCRIPTS / "data").glob("packages*.txt"))
-    return [line for file in files for line in file.read_text().splitlines() if line and not line.startswith("#")]
+def package_lists():
+    """By preset, "" for what all presets need: lines of [package, reason]."""
+    lists = {}
+    for file in (SCRIPTS / "data").glob("packages*.txt"):
+        lines = [line for line in file.read_text().splitlines() if line and not line.startswith("#")]
+        lists[file.stem.removeprefix("packages").removeprefix("_")] = [line.split(maxsplit=1) for line in lines]
+    return lists
 
 
 def packages():
-    return dict(line.split(maxsplit=1) for line in package_lines())
+    return {package for lines in package_lists().values() for package, *_ in lines}
 
 
 def step_record_columns():
@@ -69,8 +72,13 @@ def step_record_columns():
 class PackagesTest(unittest.TestCase):
 
     def test_every_package_is_named_once_with_a_reason(self):
-        self.assertEqual(len(package_lines()), len(packages()))
-        self.assertTrue(all(len(reason.split()) > 1 for reason in packages().values()))
+        lists = package_lists()
+        for preset, lines in lists.items():
+            seen = set() if preset == "" else {package for package, *_ in lists[""]}
+            for package, *reason in lines:
+                self.assertNotIn(package, seen, preset)
+                self.assertGreater(len(" ".join(reason).split()), 1, package)
+                seen.add(package)
 
     def test_every_package_is_used(self):
         for package in packages():

@@ -91,10 +91,10 @@ class SpoiltKernel : public Kernel {
  public:
   SpoiltKernel(std::unique_ptr<Kernel> true_kernel, int row, int body, double off)
       : kernel_(std::move(true_kernel)), row_(row), body_(body), off_(off) {}
-  void analyze(const PreparedStep& step, std::span<const int> parts, ParallelTasks& tasks) override {
+  void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override {
     kernel_->analyze(step, parts, tasks);
   }
-  bool rebind(const PreparedStep& step, std::span<const int> parts, ParallelTasks& tasks) override {
+  bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override {
     return kernel_->rebind(step, parts, tasks);
   }
   bool factor(const RowWeights& weights, ParallelTasks& tasks) override {

@@ -87,6 +87,30 @@ TEST(ResidualTest, AgreesWithDenseRecomputation) {
   }
 }
 
+// Impulses in their range, at its ends and beyond, and slacks small and large beside what the row can be moved by: the judge
+// looks at the diagonal in some of these cases only.
+TEST(ResidualTest, EveryRowAgreesWithDenseRecomputation) {
+  int rows_at_bounds = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const StepProblem problem = make_small_problem(seed);
+    SeededRandom random(seed);
+    std::vector<double> impulse = solve_by_enumeration(problem).impulse;
+    for (int r = 0; r < problem.row_count(); ++r) {
+      const double end = random.chance(0.5) ? problem.lower[r] : problem.upper[r];
+      if (random.chance(0.3) && std::isfinite(end)) impulse[r] = end;
+      if (random.chance(0.3)) impulse[r] += random.log_uniform(1e-9, 10) * (random.chance(0.5) ? 1 : -1);
+      rows_at_bounds += impulse[r] == problem.lower[r] || impulse[r] == problem.upper[r];
+    }
+    const DenseJudge dense(problem);
+    const std::vector<double> residuals = row_residuals(problem, impulse);
+    for (int r = 0; r < problem.row_count(); ++r) {
+      const double expected = dense.row_residual(problem, impulse, r);
+      EXPECT_NEAR(residuals[r], expected, 1e-10 * (1 + expected)) << "seed " << seed << " row " << r;
+    }
+  }
+  EXPECT_GT(rows_at_bounds, 300);
+}
+
 TEST(ResidualTest, EnergyAgreesWithDenseRecomputation) {
   for (int seed = 0; seed < kSeeds; ++seed) {
     const StepProblem problem = make_small_problem(seed);

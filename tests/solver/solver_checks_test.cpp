@@ -23,7 +23,7 @@ class LyingSolver : public StepSolver {
   bool uses_partition() const override { return false; }
 
  private:
-  SolveSummary do_solve(const StepProblem& problem, std::span<const int>, Solution& solution) override {
+  SolveSummary do_solve(const StepProblem& problem, const Parts&, Solution& solution) override {
     StepProblem copy = problem;
     damage_problem(copy);
     OracleSolution oracle = solve_by_enumeration(copy);

@@ -58,7 +58,7 @@ class PlainSolver : public StepSolver {
   bool called = false;
 
  private:
-  SolveSummary do_solve(const StepProblem&, std::span<const int>, Solution&) override {
+  SolveSummary do_solve(const StepProblem&, const Parts&, Solution&) override {
     called = true;
     return {};
   }

@@ -4,10 +4,14 @@
 
 #include <atomic>
 #include <chrono>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
+
+#include "tests/solver/seeded_random.h"
 
 namespace cleave {
 namespace {
@@ -46,23 +50,84 @@ TEST(WorkerTeamTest, KeepsStagesApart) {
   }
 }
 
-TEST(WorkerTeamTest, ATaskMayWaitForAnEarlierOne) {
+// Runs a callable as the tasks of a graph.
+template <class Callable>
+void run(WorkerTeam& team, const TaskGraph& graph, Callable task) {
+  team.run(
+      graph, [](void* context, int index) { (*static_cast<Callable*>(context))(index); }, &task);
+}
+
+TaskGraph chain(int count) {
+  std::vector<std::pair<int, int>> waits;
+  for (int i = 0; i + 1 < count; ++i) waits.emplace_back(i, i + 1);
+  TaskGraph graph;
+  graph.build(count, waits);
+  return graph;
+}
+
+TEST(WorkerTeamTest, RunsAChainInItsOrder) {
   for (const int threads : {1, 2, 5}) {
     WorkerTeam team(threads);
-    std::atomic<int> done = 0;
     std::vector<int> order;
-    run(team, 500, [&](int i) {
-      wait_until(done, i);
-      order.push_back(i);  // one at a time, because each waits for the one before
-      raise(done);
-    });
+    run(team, chain(500),
+        [&](int i) { order.push_back(i); });  // one at a time, as each waits for the one before
     ASSERT_EQ(order.size(), 500u);
     for (int i = 0; i < 500; ++i) EXPECT_EQ(order[i], i);
   }
 }
 
+TaskGraph random_graph(int seed) {
+  SeededRandom random(seed);
+  const int count = random.integer(1, 60);
+  std::set<std::pair<int, int>> waits;
+  std::vector<double> places;
+  for (int later = 0; later < count; ++later) {
+    for (int k = random.integer(0, 3); k > 0 && later > 0; --k)
+      waits.emplace(random.integer(0, later - 1), later);
+    places.push_back(random.uniform(0, 1));
+  }
+  TaskGraph graph;
+  graph.build(count, std::vector<std::pair<int, int>>(waits.begin(), waits.end()),
+              seed % 2 == 0 ? std::span<const double>() : places);
+  return graph;
+}
+
+TEST(WorkerTeamTest, EveryTaskOfAGraphComesOnceAndAfterThoseItWaitsFor) {
+  for (const int threads : {1, 2, 3, 7}) {
+    WorkerTeam team(threads);
+    for (int seed = 0; seed < 300; ++seed) {
+      team.shuffle(seed % 3 == 0 ? seed : 0);
+      const TaskGraph graph = random_graph(seed);
+      std::vector<std::atomic<int>> waits(graph.task_count()), runs(graph.task_count());
+      for (int i = 0; i < graph.task_count(); ++i) waits[i] = graph.wait_count(i);
+      std::atomic<int> early = 0;
+      run(team, graph, [&](int i) {
+        early += waits[i] != 0;
+        ++runs[i];
+        for (const int next : graph.next(i)) --waits[next];
+      });
+      EXPECT_EQ(early, 0) << "seed " << seed;
+      for (int i = 0; i < graph.task_count(); ++i) ASSERT_EQ(runs[i], 1) << "seed " << seed << ", task " << i;
+    }
+  }
+}
+
+TEST(WorkerTeamTest, ShufflingChangesTheOrder) {
+  WorkerTeam team(1);
+  TaskGraph graph;
+  graph.build(50, {});
+  std::set<std::vector<int>> orders;
+  for (const int seed : {0, 1, 2}) {
+    team.shuffle(seed);
+    std::vector<int> order;
+    run(team, graph, [&](int i) { order.push_back(i); });
+    orders.insert(order);
+  }
+  EXPECT_EQ(orders.size(), 3u);
+}
+
 // Longer than anyone looks out, at every place where a thread may sleep: between stages, at the end of a
-// stage, for an earlier task, and before the team goes.
+// stage, while a task of a graph is waited for, and before the team goes.
 TEST(WorkerTeamTest, WakesThreadsThatFellAsleep) {
   const auto rest = [] { std::this_thread::sleep_for(std::chrono::milliseconds(10)); };
   for (int round = 0; round < 5; ++round) {
@@ -74,13 +139,11 @@ TEST(WorkerTeamTest, WakesThreadsThatFellAsleep) {
       ++runs;
     });
     EXPECT_EQ(runs, 3);
-    std::atomic<int> done = 0;
-    run(team, 3, [&](int i) {
-      wait_until(done, i);
+    run(team, chain(3), [&](int) {
       rest();
-      raise(done);
+      ++runs;
     });
-    EXPECT_EQ(done, 3);
+    EXPECT_EQ(runs, 6);
     rest();
   }
 }
@@ -100,6 +163,21 @@ TEST(WorkerTeamTest, HandsOnTheFirstExceptionAndGoesOn) {
     std::atomic<int> runs = 0;
     run(team, 100, [&](int) { ++runs; });
     EXPECT_EQ(runs, 100);
+  }
+}
+
+TEST(WorkerTeamTest, HandsOnAnExceptionOfAGraph) {
+  for (const int threads : {1, 2, 4}) {
+    WorkerTeam team(threads);
+    int runs = 0;
+    const auto fail_at_40 = [&](int i) {
+      ++runs;
+      if (i == 40) throw std::runtime_error("task 40");
+    };
+    EXPECT_THROW(run(team, chain(100), fail_at_40), std::runtime_error);
+    EXPECT_EQ(runs, 41);
+    run(team, chain(100), [&](int) { ++runs; });
+    EXPECT_EQ(runs, 141);
   }
 }
 

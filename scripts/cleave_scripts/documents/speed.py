@@ -41,8 +41,7 @@ def model(stored):
     return (f"Modelled over measured t_s on two threads, rows of `{ONE_THREAD[0]}` against those of `{TWO_THREADS[0]}` "
             f"({stored.origin(ONE_THREAD[0])}); {found.waited} pairs that waited for a core are "
             "left out:\n\n" +
-            text.table(["scene", "pairs", "lower quartile", "median", "upper quartile"], lines) +
-            "\n\nThe model has no look-ahead in the dense interface, two threads do.")
+            text.table(["scene", "pairs", "lower quartile", "median", "upper quartile"], lines))
 
 
 def solver_benchmark(stored):

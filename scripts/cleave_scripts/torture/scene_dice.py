@@ -6,9 +6,13 @@ def _power(dice, least, most):
     return f"{10**dice.uniform(least, most):.6g}"
 
 
-def _rocks(dice):
+def _pile(dice):
     masses = ",".join(_power(dice, -1, 6) for _ in range(dice.choice([1, 2, 3])))
-    return ["--bodies", dice.randrange(1, 25), "--rock-shape", dice.choice(ROCKS), "--mass", masses]
+    return ["--bodies", dice.randrange(1, 25), "--mass", masses]
+
+
+def _rocks(dice):
+    return [*_pile(dice), "--rock-shape", dice.choice(ROCKS), "--depth", dice.randrange(1, 8)]
 
 
 def _box_column(dice):
@@ -21,6 +25,7 @@ def _box_column(dice):
 SCENES = {
     "rock_pile": _rocks,
     "large_rock_pile": _rocks,
+    "silo": _pile,
     "chain_drop": lambda dice: ["--links", dice.randrange(1, 25), "--bob-mass", _power(dice, -3, 6)],
     "log_tower": lambda dice: ["--layers", dice.randrange(1, 5), "--logs", dice.randrange(2, 5), "--log-shape",
                                dice.choice(["capsule", "box", "cylinder"])],

@@ -1,0 +1,147 @@
+#include "partition/nested.h"
+
+#include <algorithm>
+#include <cassert>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "partition/leftovers.h"
+#include "partition/refuse.h"
+#include "partition/registry.h"
+
+namespace cleave {
+namespace {
+
+// Measured on recorded and synthetic piles: more saves little and makes larger children (README.md).
+constexpr double kMostJoined = 1.2;
+
+// A node of the tree as it is made: parents before children.
+struct Node {
+  int parent;
+  bool is_leaf;
+};
+
+// A set that is still to be looked at. Leaves have no graph.
+struct OpenSet {
+  std::vector<int> bodies;  // of the whole graph, ascending
+  BodyGraph graph;
+  int parent;
+  bool is_leaf;
+};
+
+// Depth first with a stack of its own: a set that loses one body at a time makes a deep tree.
+class Recursion {
+ public:
+  Recursion(int max_bodies, int arity, const SplitSet& split_set)
+      : max_bodies_(max_bodies), arity_(arity), split_set_(split_set) {}
+
+  NestedPartition run(const BodyGraph& graph) {
+    const int n = graph.body_count();
+    result_.leaves.part_of_body.resize(n);
+    if (n == 0) return std::move(result_);
+    std::vector<int> bodies(n);
+    std::iota(bodies.begin(), bodies.end(), 0);
+    if (const int root = add_node(-1, n <= max_bodies_, bodies); !nodes_[root].is_leaf)
+      split(graph, bodies, root);
+    while (!open_.empty()) {
+      const OpenSet set = std::move(open_.back());
+      open_.pop_back();
+      const int node = add_node(set.parent, set.is_leaf, set.bodies);
+      if (!set.is_leaf) split(set.graph, set.bodies, node);
+    }
+    number_nodes();
+    return std::move(result_);
+  }
+
+ private:
+  int add_node(int parent, bool is_leaf, std::span<const int> bodies) {
+    nodes_.push_back({parent, is_leaf});
+    if (is_leaf) {
+      for (const int body : bodies) result_.leaves.part_of_body[body] = result_.leaves.part_count;
+      ++result_.leaves.part_count;
+    }
+    return static_cast<int>(nodes_.size()) - 1;
+  }
+
+  // Opens the children, the first to be taken first.
+  void split(const BodyGraph& graph, std::span<const int> bodies, int node) {
+    const int most_bodies = graph.body_count() / arity_ + (graph.body_count() % arity_ > 0);
+    const Partition parts = split_set_(graph, most_bodies);
+    assert(parts.part_count >= 2);
+    const std::vector<int> sizes = part_sizes(parts);
+    std::vector<OpenSet> children(parts.part_count);
+    std::vector<int> set_of_body = parts.part_of_body;
+    for (int child = 0; child < parts.part_count; ++child) {
+      children[child].parent = node;
+      children[child].is_leaf = most_bodies <= max_bodies_ || sizes[child] <= max_bodies_;
+      children[child].bodies.reserve(sizes[child]);
+    }
+    for (int k = 0; k < graph.body_count(); ++k) {
+      OpenSet& child = children[parts.part_of_body[k]];
+      child.bodies.push_back(bodies[k]);
+      if (child.is_leaf) set_of_body[k] = -1;
+    }
+    std::vector<BodyGraph> graphs = graph.induced(set_of_body, parts.part_count);
+    for (int child = parts.part_count - 1; child >= 0; --child) {
+      children[child].graph = std::move(graphs[child]);
+      open_.push_back(std::move(children[child]));
+    }
+  }
+
+  // Inner nodes backwards, as parents were made before their children.
+  void number_nodes() {
+    const int count = static_cast<int>(nodes_.size());
+    std::vector<int> number(count);
+    int leaf = 0, inner = count;
+    for (int node = 0; node < count; ++node) number[node] = nodes_[node].is_leaf ? leaf++ : --inner;
+    result_.parent_of_part.resize(count);
+    for (int node = 0; node < count; ++node)
+      result_.parent_of_part[number[node]] = nodes_[node].parent < 0 ? -1 : number[nodes_[node].parent];
+  }
+
+  const int max_bodies_, arity_;
+  const SplitSet& split_set_;
+  std::vector<Node> nodes_;
+  std::vector<OpenSet> open_;
+  NestedPartition result_;
+};
+
+Algorithm with_max_bodies(const Algorithm& partitioner, int max_bodies) {
+  std::map<std::string, std::string> values = partitioner.settings.values();
+  values["max-bodies"] = std::to_string(max_bodies);
+  return {partitioner.text, partitioner.name, Settings(std::move(values))};
+}
+
+}  // namespace
+
+NestedPartition split_by_recursion(const BodyGraph& graph, int max_bodies, int arity,
+                                   const SplitSet& split_set) {
+  if (max_bodies < 1) refuse("max_bodies", max_bodies, ">= 1");
+  if (arity < 2) refuse("arity", arity, ">= 2");
+  return Recursion(max_bodies, arity, split_set).run(graph);
+}
+
+SetSplitter::SetSplitter(const Algorithm& partitioner, const Algorithm& refiner, int arity)
+    : partitioner_(partitioner), refiner_(make_refiner(refiner)), arity_(arity) {
+  const std::unique_ptr<Partitioner> made = make_partitioner(partitioner);
+  if (!made->promised().at_most_max_bodies)
+    throw std::invalid_argument("partitioner " + partitioner.text +
+                                " keeps to no max-bodies, so it cannot split by recursion");
+  max_bodies_ = made->max_bodies().value();
+}
+
+Partition SetSplitter::grow(const BodyGraph& set, int most_bodies) const {
+  Partition parts = make_partitioner(with_max_bodies(partitioner_, most_bodies))->run(set);
+  const int most_joined =
+      most_bodies <= max_bodies_ ? max_bodies_ : static_cast<int>(kMostJoined * most_bodies);
+  join_leftovers(set, {arity_, most_bodies / 2 + most_bodies % 2, most_joined}, parts);
+  return parts;
+}
+
+void SetSplitter::refine(const BodyGraph& set, int most_bodies, Partition& parts) const {
+  refiner_->run(set, most_bodies, parts);
+}
+
+}  // namespace cleave

@@ -1,0 +1,66 @@
+// What `monolithic` and the kernels with an interface of bodies share: one sparse block Cholesky factorisation of
+// H = M + J^T D J over all bodies,
+//
+//     H dv = f_v + J^T D f_r,     dlambda = D (f_r - J dv),
+//
+// dealt out in branches of its elimination tree (block_symbolic.h). Assembly has no order; a branch is factored after its
+// child branches, and so goes forward substitution; back substitution goes from the root. A kernel only says in what
+// order bodies are eliminated.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/block_matrix.h"
+#include "solver/kernels/kernel.h"
+#include "solver/separators.h"
+#include "solver/task_graph.h"
+
+namespace cleave {
+
+class BranchKernel : public Kernel {
+ public:
+  void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
+  bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
+  bool factor(const RowWeights& weights, ParallelTasks& tasks) override;
+  void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
+             std::span<double> dlambda, ParallelTasks& tasks) override;
+  int interface_unknowns() const override { return 6 * interface_bodies_; }
+  double local_mflop() const override;
+  double interface_mflop() const override;
+
+ protected:
+  // Of every body, in the order of elimination; no body in the stages of the interface leaves one.
+  struct Stages {
+    std::vector<int> of_body;  // empty: one stage
+    int count = 1;
+    int first_of_interface = 1;
+  };
+  virtual void choose_stages(const PreparedStep& step, const Parts& parts, Stages& stages) = 0;
+  // Parts first, then what stands between them, level by level.
+  void choose_separators(const PreparedStep& step, const Parts& parts, Stages& stages);
+
+ private:
+  void bind(const PreparedStep& step);
+  void list_tasks();
+  void reduce(const Chunk& chunk, std::span<const double> f_r);
+  void gather(const Chunk& chunk, std::span<const double> f_v);
+  void expand(const Chunk& chunk, std::span<const double> f_r, std::span<double> dlambda) const;
+
+  const PreparedStep* step_ = nullptr;
+  Stages stages_;
+  Separators separators_;
+  WeightedRows rows_;
+  BlockMatrix matrix_;
+  int interface_bodies_ = 0;
+  std::vector<int> local_branches_, interface_branches_;
+  TaskGraph assembly_graph_, local_graph_, interface_graph_, forward_graph_, backward_graph_;
+  std::vector<std::pair<int, int>> waits_;  // scratch
+  std::vector<int> task_of_branch_;         // scratch
+  std::vector<double> places_;              // scratch
+  std::vector<char> factored_;
+  std::vector<double> group_sums_;  // (groups, 12) J^T D f_r of each
+  std::vector<double> x_;           // (n, 6) by position
+};
+
+}  // namespace cleave

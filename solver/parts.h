@@ -1,0 +1,44 @@
+// How the bodies of a step are split into subsystems: one level of parts, or a tree of them.
+//
+//   part_of_body    (n) ids 0..parts-1 of the subsystems
+//   parent_of_part  empty: one level. Otherwise one entry a node of the tree: the leaves 0..parts-1, which are the
+//                   parts, then the inner nodes, each the union of its children. Every parent has a greater
+//                   number than its children; -1 for the root, which is the last node and the only root. A
+//                   single part is its own root.
+#pragma once
+
+#include <concepts>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace cleave {
+
+// Looks at arrays of somebody else, which must outlive it.
+struct Parts {
+  Parts() = default;
+
+  // From whatever holds one part id per body: parts are then one level unless parents are given too.
+  template <class Ids>
+  requires std::convertible_to<const Ids&, std::span<const int>> Parts(
+      const Ids& part_of_body, std::span<const int> parent_of_part = {})
+      : part_of_body(part_of_body), parent_of_part(parent_of_part) {}
+
+  std::span<const int> part_of_body;
+  std::span<const int> parent_of_part;
+};
+
+// Keeps its scratch, so that parts as large as those before allocate nothing.
+class PartsCheck {
+ public:
+  // Empty, or in one line what is wrong with parts of so many bodies: entry, value and what is allowed. Ids of
+  // a single level are not looked at, only how many there are.
+  std::string find_error(const Parts& parts, int bodies);
+
+ private:
+  std::string find_tree_error(std::span<const int> parent_of_part);
+
+  std::vector<bool> has_child_;  // (nodes)
+};
+
+}  // namespace cleave

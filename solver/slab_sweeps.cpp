@@ -1,0 +1,357 @@
+#include "solver/slab_sweeps.h"
+
+#include <immintrin.h>
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace cleave {
+namespace {
+
+constexpr int kSideBySide = 6;   // groups that one core works on at a time
+constexpr int kSlabRows = 600;   // about so many in a slab: five microseconds of work
+constexpr int kWordColors = 64;  // colours in one word of used_colors_
+
+// A group of rows on its way: the velocities of its two bodies stay in registers.
+struct Traveller {
+  const SlabRow* row;
+  float* impulse;
+  int rows_left;
+  __m256 u_a, u_b;
+};
+
+struct Arrays {
+  std::span<const RowGroup> groups;
+  const int *place_of_body, *place_of_group;
+  const SlabRow* rows;
+  float* impulse;
+  SlabBody* bodies;  // by place, and one that stands still
+  int still;
+};
+
+inline void load(const Arrays& arrays, int group, Traveller& t) {
+  const RowGroup& g = arrays.groups[group];
+  t.u_a = _mm256_load_ps(arrays.bodies[arrays.place_of_body[g.body_a]].velocity);
+  t.u_b =
+      _mm256_load_ps(arrays.bodies[g.body_b < 0 ? arrays.still : arrays.place_of_body[g.body_b]].velocity);
+  t.row = arrays.rows + arrays.place_of_group[group];
+  t.impulse = arrays.impulse + arrays.place_of_group[group];
+  t.rows_left = g.row_count;
+}
+
+inline void store(const Arrays& arrays, int group, const Traveller& t) {
+  const RowGroup& g = arrays.groups[group];
+  _mm256_store_ps(arrays.bodies[arrays.place_of_body[g.body_a]].velocity, t.u_a);
+  if (g.body_b >= 0) _mm256_store_ps(arrays.bodies[arrays.place_of_body[g.body_b]].velocity, t.u_b);
+}
+
+inline float sum_of(__m256 x) {
+  const __m128 four = _mm_add_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
+  const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
+  return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
+}
+
+// The next row of each. Every traveller's arithmetic is its own: it does not matter which others are beside it.
+template <int Count>
+inline void advance(Traveller* travellers) {
+  float change[Count];
+  for (int i = 0; i < Count; ++i) {
+    const Traveller& t = travellers[i];
+    const SlabRow& row = *t.row;
+    const float jv = sum_of(_mm256_fmadd_ps(_mm256_load_ps(row.jacobian_b), t.u_b,
+                                            _mm256_mul_ps(_mm256_load_ps(row.jacobian_a), t.u_a)));
+    const float old = *t.impulse;
+    const float next =
+        std::min(std::max(std::fma(old, row.kept(), row.push()) - jv, row.lower()), row.upper());
+    change[i] = next - old;
+    *t.impulse = next;
+  }
+  for (int i = 0; i < Count; ++i) {
+    Traveller& t = travellers[i];
+    const __m256 step = _mm256_set1_ps(change[i]);
+    t.u_a = _mm256_fmadd_ps(_mm256_load_ps(t.row->mass_jacobian_a), step, t.u_a);
+    t.u_b = _mm256_fmadd_ps(_mm256_load_ps(t.row->mass_jacobian_b), step, t.u_b);
+    ++t.row, ++t.impulse, --t.rows_left;
+  }
+}
+
+// `Count` groups side by side, or as many as there are left.
+template <int Count>
+void visit_set(const Arrays& arrays, std::span<const int> which) {
+  if constexpr (Count > 1) {
+    if (static_cast<int>(which.size()) < Count) return visit_set<Count - 1>(arrays, which);
+  }
+  Traveller travellers[Count];
+  for (int i = 0; i < Count; ++i) load(arrays, which[i], travellers[i]);
+  // Longer ones come first, so the last of them has the fewest rows.
+  while (travellers[Count - 1].rows_left > 0) advance<Count>(travellers);
+  for (int i = 0; i < Count; ++i) {
+    while (travellers[i].rows_left > 0) advance<1>(travellers + i);
+    store(arrays, which[i], travellers[i]);
+  }
+}
+
+// Of the groups of one colour.
+void visit(const Arrays& arrays, std::span<const int> which) {
+  for (std::size_t begin = 0; begin < which.size(); begin += kSideBySide) {
+    const std::size_t count = std::min<std::size_t>(kSideBySide, which.size() - begin);
+    visit_set<kSideBySide>(arrays, which.subspan(begin, count));
+  }
+}
+
+}  // namespace
+
+void SlabSweeps::bind(const PreparedStep& step) {
+  assert(step.set().axes().empty());
+  step_ = &step;
+  measure_distances(step);
+  cut_slabs(step);
+  color_groups(step);
+  sort_groups(step);
+  assign_places(step);
+  pack_rows(step);
+  build_graph();
+}
+
+// Breadth first; appends to queue_ the bodies that are reached and have no distance yet. Returns the last of them.
+int SlabSweeps::walk_from(const PreparedStep& step, int start, int distance) {
+  std::size_t next = queue_.size();
+  distance_[start] = distance;
+  for (queue_.push_back(start); next < queue_.size(); ++next) {
+    const int body = queue_[next];
+    for (const int side : step.sides_of_body(body)) {
+      const RowGroup& g = step.groups()[side / 2];
+      const int other = side % 2 == 0 ? g.body_b : g.body_a;
+      if (other < 0 || distance_[other] >= 0) continue;
+      distance_[other] = distance_[body] + 1;
+      queue_.push_back(other);
+    }
+  }
+  return queue_.back();
+}
+
+// From a body at the edge: the one that is reached last from the body of lowest number. Islands follow each other.
+void SlabSweeps::measure_distances(const PreparedStep& step) {
+  distance_.assign(step.body_count(), -1);
+  queue_.clear();
+  for (int body = 0, next = 0; body < step.body_count(); ++body) {
+    if (distance_[body] >= 0) continue;
+    const std::size_t island = queue_.size();
+    const int edge = walk_from(step, body, 0);
+    for (std::size_t k = island; k < queue_.size(); ++k) distance_[queue_[k]] = -1;
+    queue_.resize(island);
+    next = distance_[walk_from(step, edge, next)] + 1;
+  }
+}
+
+// At whole distances, so that no pair of bodies reaches over a slab.
+void SlabSweeps::cut_slabs(const PreparedStep& step) {
+  const int most = queue_.empty() ? 0 : distance_[queue_.back()];
+  rows_at_.assign(most + 1, 0);
+  for (const RowGroup& g : step.groups()) rows_at_[distance_[g.body_a]] += g.row_count;
+  const int wanted = std::max(1, step.row_count() / kSlabRows);
+  slab_count_ = 0;
+  long rows = 0;  // so far
+  for (int at = 0; at <= most; ++at) {
+    rows += rows_at_[at];
+    rows_at_[at] = slab_count_;
+    if (rows * wanted >= static_cast<long>(slab_count_ + 1) * step.row_count()) ++slab_count_;
+  }
+  slab_count_ = std::max(slab_count_, 1);
+  slab_of_body_.resize(step.body_count());
+  for (int body = 0; body < step.body_count(); ++body)
+    slab_of_body_[body] = std::min(rows_at_[distance_[body]], slab_count_ - 1);
+}
+
+// Of the colours of its set that neither body has the one with the fewest groups, or a new one. A body in very many
+// groups needs more than a word of colours.
+void SlabSweeps::color_groups(const PreparedStep& step) {
+  std::size_t most = 0;
+  for (int body = 0; body < step.body_count(); ++body) most = std::max(most, step.sides_of_body(body).size());
+  const std::size_t words = (2 * most + kWordColors) / kWordColors, colors = kWordColors * words;
+  const int sets = 2 * slab_count_;
+  used_colors_.assign(3 * words * step.body_count(), 0);  // a body is in one inside and up to two gaps
+  group_count_.assign(colors * sets, 0);
+  color_first_.assign(sets + 1, 0);
+  set_of_group_.clear();
+  color_of_group_.clear();
+  for (const RowGroup& g : step.groups()) {
+    const int slab_a = slab_of_body_[g.body_a], slab_b = g.body_b < 0 ? slab_a : slab_of_body_[g.body_b];
+    const int low = std::min(slab_a, slab_b);
+    const bool inside = slab_a == slab_b;
+    const int set = inside ? low : set_of_gap(low);
+    const auto used = [&](int body, int slab) {
+      return used_colors_.data() + words * (3 * body + (inside ? 0 : slab == low ? 1 : 2));
+    };
+    std::uint64_t* a = used(g.body_a, slab_a);
+    std::uint64_t* b = g.body_b < 0 ? a : used(g.body_b, slab_b);
+    int* count = group_count_.data() + colors * set;
+    int best = color_first_[set + 1];
+    for (int color = color_first_[set + 1] - 1; color >= 0; --color) {
+      const bool free = ((a[color / kWordColors] | b[color / kWordColors]) >> color % kWordColors & 1) == 0;
+      if (free && (best == color_first_[set + 1] || count[color] <= count[best])) best = color;
+    }
+    color_first_[set + 1] = std::max(color_first_[set + 1], best + 1);
+    a[best / kWordColors] |= std::uint64_t{1} << best % kWordColors;
+    b[best / kWordColors] |= std::uint64_t{1} << best % kWordColors;
+    ++count[best];
+    set_of_group_.push_back(set);
+    color_of_group_.push_back(best);
+  }
+  std::partial_sum(color_first_.begin(), color_first_.end(), color_first_.begin());
+}
+
+void SlabSweeps::sort_groups(const PreparedStep& step) {
+  const auto place = [this](std::size_t g) { return color_first_[set_of_group_[g]] + color_of_group_[g]; };
+  group_first_.assign(color_first_.back() + 1, 0);
+  for (std::size_t g = 0; g < set_of_group_.size(); ++g) ++group_first_[place(g) + 1];
+  std::partial_sum(group_first_.begin(), group_first_.end(), group_first_.begin());
+  groups_.resize(set_of_group_.size());
+  group_count_.assign(group_first_.begin(), group_first_.end());
+  for (std::size_t g = 0; g < groups_.size(); ++g) groups_[group_count_[place(g)]++] = static_cast<int>(g);
+  const auto rows = [&](int g) { return step.groups()[g].row_count; };
+  for (std::size_t c = 0; c + 1 < group_first_.size(); ++c) {
+    std::sort(groups_.begin() + group_first_[c], groups_.begin() + group_first_[c + 1],
+              [&](int a, int b) { return rows(a) != rows(b) ? rows(a) > rows(b) : a < b; });
+  }
+}
+
+// Insides by slab, then the gaps behind even slabs, then those behind odd ones.
+int SlabSweeps::set_of_gap(int gap) const {
+  const int even_gaps = slab_count_ / 2;
+  return slab_count_ + (gap % 2 == 0 ? 0 : even_gaps) + gap / 2;
+}
+
+// A task waits for those before it that share a slab with it: an inside for the gaps around it of the sweep before, a gap
+// for the two insides, and one behind an odd slab for the gaps around it too.
+void SlabSweeps::build_graph() {
+  const int slabs = slab_count_, gaps = slabs - 1, tasks = slabs + gaps;
+  waits_.clear();
+  places_.resize(kMostSweeps * tasks);
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    const int begin = sweep * tasks, before = begin - tasks;
+    for (int slab = 0; slab < slabs; ++slab) {
+      places_[begin + slab] = (slab + 0.5) / slabs;
+      if (sweep == 0) continue;
+      for (const int gap : {slab - 1, slab}) {
+        if (gap >= 0 && gap < gaps) waits_.emplace_back(before + set_of_gap(gap), begin + slab);
+      }
+      if (gaps == 0) waits_.emplace_back(before, begin);
+    }
+    for (int gap = 0; gap < gaps; ++gap) {
+      const int task = begin + set_of_gap(gap);
+      places_[task] = (gap + 0.75) / slabs;
+      waits_.emplace_back(begin + gap, task);
+      waits_.emplace_back(begin + gap + 1, task);
+      for (const int even : {gap - 1, gap + 1}) {
+        if (gap % 2 == 1 && even < gaps) waits_.emplace_back(begin + set_of_gap(even), task);
+      }
+    }
+  }
+  graph_.build(kMostSweeps * tasks, waits_, places_);
+}
+
+// What two threads write stays apart in memory: velocities by slab, each body in a cache line of its own, and rows by
+// set, in the order in which they are visited.
+void SlabSweeps::assign_places(const PreparedStep& step) {
+  const int n = step.body_count();
+  slab_first_.assign(slab_count_ + 1, 0);
+  for (int body = 0; body < n; ++body) ++slab_first_[slab_of_body_[body] + 1];
+  std::partial_sum(slab_first_.begin(), slab_first_.end(), slab_first_.begin());
+  place_of_body_.resize(n);
+  for (int body = 0; body < n; ++body) place_of_body_[body] = slab_first_[slab_of_body_[body]]++;
+  bodies_.resize(n + 1);
+  bodies_[n] = {};
+  place_of_group_.resize(groups_.size());
+  int place = 0;
+  for (const int g : groups_) {
+    place_of_group_[g] = place;
+    place += step.groups()[g].row_count;
+  }
+  rows_.resize(place);
+  impulse_.resize(place);
+}
+
+void SlabSweeps::pack_rows(const PreparedStep& step) {
+  const StepProblem& p = step.problem();
+  const auto bound = [](double x) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    return static_cast<float>(std::clamp(x, -kMost, kMost));
+  };
+  for (const int g : groups_) {
+    const RowGroup& group = step.groups()[g];
+    for (int k = 0; k < group.row_count; ++k) {
+      const int r = group.first_row + k;
+      SlabRow& row = rows_[place_of_group_[g] + k];
+      row = {};
+      const double inverse = 1 / step.diagonal()[r];
+      for (int c = 0; c < 6; ++c) {
+        row.jacobian_a[c] = static_cast<float>(p.jacobian[12L * r + c] * inverse);
+        row.jacobian_b[c] = static_cast<float>(p.jacobian[12L * r + 6 + c] * inverse);
+        row.mass_jacobian_a[c] = static_cast<float>(step.mass_jacobian()[12L * r + c]);
+        row.mass_jacobian_b[c] = static_cast<float>(step.mass_jacobian()[12L * r + 6 + c]);
+      }
+      row.kept() = static_cast<float>(1 - p.compliance[r] * inverse);
+      row.push() = static_cast<float>(p.rhs[r] * inverse);
+      row.lower() = bound(p.lower[r]);
+      row.upper() = bound(p.upper[r]);
+    }
+  }
+}
+
+void SlabSweeps::take_in(std::span<const double> impulse, std::span<const double> v) {
+  for (std::size_t body = 0; body < place_of_body_.size(); ++body) {
+    SlabBody& own = bodies_[place_of_body_[body]];
+    own = {};
+    for (int c = 0; c < 6; ++c) own.velocity[c] = static_cast<float>(v[6 * body + c]);
+  }
+  const auto groups = step_->groups();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    for (int k = 0; k < groups[g].row_count; ++k)
+      impulse_[place_of_group_[g] + k] = static_cast<float>(impulse[groups[g].first_row + k]);
+  }
+}
+
+// What is at a bound there is at the bound here, to the last digit.
+void SlabSweeps::give_out(std::span<double> impulse, std::span<double> v) const {
+  for (std::size_t body = 0; body < place_of_body_.size(); ++body) {
+    const SlabBody& own = bodies_[place_of_body_[body]];
+    for (int c = 0; c < 6; ++c) v[6 * body + c] = own.velocity[c];
+  }
+  const auto groups = step_->groups();
+  const StepProblem& p = step_->problem();
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    for (int k = 0; k < groups[g].row_count; ++k) {
+      const SlabRow& row = rows_[place_of_group_[g] + k];
+      const float found = impulse_[place_of_group_[g] + k];
+      const int r = groups[g].first_row + k;
+      impulse[r] = found <= row.lower()   ? p.lower[r]
+                   : found >= row.upper() ? p.upper[r]
+                                          : std::clamp<double>(found, p.lower[r], p.upper[r]);
+    }
+  }
+}
+
+void SlabSweeps::run(int sweeps, std::span<double> impulse, std::span<double> v, ParallelTasks& tasks) {
+  assert(sweeps <= kMostSweeps);
+  const Arrays arrays{step_->groups(),
+                      place_of_body_.data(),
+                      place_of_group_.data(),
+                      rows_.data(),
+                      impulse_.data(),
+                      bodies_.data(),
+                      static_cast<int>(place_of_body_.size())};
+  take_in(impulse, v);
+  tasks.run(Stage::predict, graph_, [&](int task) {
+    if (task / set_count() >= sweeps) return;
+    check_stop(tasks.stop());
+    const int set = task % set_count();
+    for (int color = 0; color < color_count(set); ++color) visit(arrays, groups_of(set, color));
+  });
+  give_out(impulse, v);
+}
+
+}  // namespace cleave

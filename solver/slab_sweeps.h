@@ -1,0 +1,100 @@
+// Projected Gauss-Seidel sweeps for several threads: the predictor of the active-set strategies. One row is
+//
+//     w_r = J_r v + C_r lambda_r - b_r,   lambda_r <- clamp(lambda_r - w_r / d_r, lo_r, hi_r),   v += M^-1 J_r^T dlambda
+//
+// as in gauss_seidel.h, where rows come in their natural order. Here bodies are cut into slabs, by their distance in the
+// graph from a body at its edge, so that rows between two bodies are inside of a slab or between two that are
+// neighbours. A sweep is
+//
+//     the insides of all slabs;   the gaps between slabs 0|1, 2|3, ...;   the gaps 1|2, 3|4, ...
+//
+// and every inside or gap a task, which waits for those that share bodies with it alone: slabs at one end may be a sweep
+// ahead of the other. A task visits its groups of rows (those between two bodies) colour after colour. Groups of a colour
+// share no dynamic body, and six of them are worked on side by side, so that arithmetic units wait less. Order and bytes
+// depend on the problem alone, not on the number of threads. Numbers are of single precision, half the memory that a
+// sweep goes through: what comes out is a guess of the active set, and solved exactly afterwards.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "solver/parallel_tasks.h"
+#include "solver/prepared_step.h"
+
+namespace cleave {
+
+// All that a sweep needs of a row, in two cache lines; lambda_r - w_r / d_r = kept lambda_r + push - (J_r / d_r) v. The
+// numbers of a body are followed by two more: zeros, but in J / d, where a velocity's are zero too.
+struct alignas(64) SlabRow {
+  float jacobian_a[8], jacobian_b[8];  // J_r / d_r
+  float mass_jacobian_a[8], mass_jacobian_b[8];
+
+  float& kept() { return jacobian_a[6]; }
+  float& push() { return jacobian_a[7]; }
+  float& lower() { return jacobian_b[6]; }  // finite, so that its product with zero is zero
+  float& upper() { return jacobian_b[7]; }
+  float kept() const { return jacobian_a[6]; }
+  float push() const { return jacobian_a[7]; }
+  float lower() const { return jacobian_b[6]; }
+  float upper() const { return jacobian_b[7]; }
+};
+
+struct alignas(64) SlabBody {
+  float velocity[8];  // and two zeros
+};
+
+class SlabSweeps {
+ public:
+  static constexpr int kMostSweeps = 5;  // of one run
+
+  // Of a problem without turned boxes, which must stay as it is for run().
+  void bind(const PreparedStep& step);
+
+  // impulse (m) and v = v0 + M^-1 J^T impulse (n, 6) are updated in place, v to single precision; impulses at a bound
+  // are exactly there. Ends with SolveStopped where tasks say so.
+  void run(int sweeps, std::span<double> impulse, std::span<double> v, ParallelTasks& tasks);
+
+  int slab_count() const { return slab_count_; }
+  std::span<const int> slab_of_body() const { return slab_of_body_; }
+  // Sets of groups: insides 0 .. slab_count() - 1, then gaps.
+  int set_count() const { return 2 * slab_count_ - 1; }
+  int color_count(int set) const { return color_first_[set + 1] - color_first_[set]; }
+  std::span<const int> groups_of(int set, int color) const {
+    const int* first = group_first_.data() + color_first_[set] + color;
+    return std::span(groups_).subspan(first[0], first[1] - first[0]);
+  }
+
+ private:
+  void measure_distances(const PreparedStep& step);
+  int walk_from(const PreparedStep& step, int start, int distance);
+  void cut_slabs(const PreparedStep& step);
+  void color_groups(const PreparedStep& step);
+  void sort_groups(const PreparedStep& step);
+  void assign_places(const PreparedStep& step);
+  void pack_rows(const PreparedStep& step);
+  void take_in(std::span<const double> impulse, std::span<const double> v);
+  void give_out(std::span<double> impulse, std::span<double> v) const;
+  int set_of_gap(int gap) const;
+  void build_graph();
+
+  const PreparedStep* step_ = nullptr;
+  int slab_count_ = 0;
+  std::vector<int> slab_of_body_;
+  std::vector<int> color_first_;  // of each set, in group_first_
+  std::vector<int> group_first_;  // of each colour, in groups_
+  std::vector<int> groups_;       // by set, colour, and longest first
+  std::vector<int> place_of_body_, place_of_group_;
+  std::vector<SlabBody> bodies_;  // by place, then one that stands still
+  std::vector<SlabRow> rows_;     // by place, in the order of groups_
+  std::vector<float> impulse_;    // by place
+  TaskGraph graph_;               // of kMostSweeps sweeps
+  // Scratch.
+  std::vector<int> distance_, queue_, rows_at_, slab_first_, set_of_group_, color_of_group_, group_count_;
+  std::vector<std::uint64_t> used_colors_;  // a bit a colour, by body
+  std::vector<std::pair<int, int>> waits_;
+  std::vector<double> places_;
+};
+
+}  // namespace cleave

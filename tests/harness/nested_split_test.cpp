@@ -1,0 +1,137 @@
+// The bodies of a step split by recursion: what the harness hands over, times and keeps of it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+
+#include "harness/experiment/algorithms.h"
+#include "harness/experiment/small_islands.h"
+#include "harness/experiment/splitter.h"
+#include "solver/parts.h"
+#include "tests/harness/problem_file_sample.h"
+#include "tests/harness/run_program.h"
+
+namespace cleave {
+namespace {
+
+// Chains of bodies, one after the other: the sample's single chain without the joints between two of them.
+StepProblem chains(const std::vector<int>& lengths) {
+  StepProblem problem = sample_problem(std::accumulate(lengths.begin(), lengths.end(), 0), 3);
+  int end = 0;
+  for (const int length : lengths) {
+    end += length;
+    const int joint = end - 1;  // its row joins it to the next body
+    if (end < problem.body_count()) problem.row_body[2 * joint + 1] = -1;
+  }
+  return problem;
+}
+
+// A chain whose bodies also touch the sixth after them, where there is one.
+StepProblem braid(int bodies) {
+  StepProblem problem = sample_problem(bodies, 3);
+  for (int row = 0; row < problem.row_count(); ++row) {
+    int& other = problem.row_body[2 * row + 1];
+    if (other < 0 && problem.row_body[2 * row] + 6 < bodies) other = problem.row_body[2 * row] + 6;
+  }
+  return problem;
+}
+
+SplitSetup setup(const std::string& partitioner, const std::string& refiner, int arity,
+                 bool skip_small_islands = false) {
+  return {read_named("partitioner", partitioner), read_named("refiner", refiner), skip_small_islands, arity};
+}
+
+std::string tree_error(const Split& split) {
+  return PartsCheck().find_error({split.parts.part_of_body, split.parent_of_part}, split.graph.body_count());
+}
+
+TEST(NestedSplit, HandsOverATreeForEveryPair) {
+  const StepProblem problem = chains({40, 7, 1, 30});
+  for (const Algorithm& partitioner : read_list("partitioner", "paper", {{"max-bodies", "4"}}))
+    for (const Algorithm& refiner : read_list("refiner", "all", {})) {
+      SCOPED_TRACE(partitioner.text + "+" + refiner.text);
+      const Split split = Splitter({partitioner, refiner, false, 3}).run(problem);
+      EXPECT_EQ(tree_error(split), "");
+      const PartitionMetrics metrics = measure_partition(split.graph, split.parts.part_of_body);
+      EXPECT_EQ(metrics.parts, split.parts.part_count);
+      EXPECT_GE(metrics.parts, 78 / 4);
+      EXPECT_GT(split.parent_of_part.size(), split.parts.part_of_body.size() / 4);
+      EXPECT_GT(split.partition_ms, 0);
+      EXPECT_GE(split.refine_ms, 0);
+      EXPECT_EQ(measure_partition(split.graph, split.before.part_of_body).parts, split.before.part_count);
+    }
+}
+
+// What stands in the columns of the grown parts is the recursion without its refiner.
+TEST(NestedSplit, BeforeIsWhatNoRefinerTouched) {
+  const StepProblem problem = braid(90);
+  const Split refined = Splitter(setup("maxdp@max-bodies=5", "fm", 2)).run(problem);
+  const Split plain = Splitter(setup("maxdp@max-bodies=5", "none", 2)).run(problem);
+  EXPECT_EQ(refined.before.part_of_body, plain.parts.part_of_body);
+  EXPECT_EQ(plain.before.part_of_body, plain.parts.part_of_body);
+  EXPECT_NE(refined.before.part_of_body, refined.parts.part_of_body);
+}
+
+TEST(NestedSplit, OneLevelHasNoTree) {
+  const StepProblem problem = chains({40});
+  const SplitSetup flat{read_named("partitioner", "mix@max-bodies=5"), read_named("refiner", "fm")};
+  EXPECT_TRUE(Splitter(flat).run(problem).parent_of_part.empty());
+  EXPECT_EQ(Splitter(setup("mix@max-bodies=40", "fm", 2)).run(problem).parent_of_part, std::vector<int>{-1});
+}
+
+TEST(NestedSplit, SmallIslandsHangFromTheRoot) {
+  const StepProblem problem = chains({3, 40, 1, 2});
+  for (const Algorithm& partitioner : read_list("partitioner", "paper", {{"max-bodies", "5"}})) {
+    SCOPED_TRACE(partitioner.text);
+    const Split split = Splitter({partitioner, read_named("refiner", "fm"), true, 2}).run(problem);
+    EXPECT_EQ(tree_error(split), "");
+    const std::vector<int>& part = split.parts.part_of_body;
+    const int root = static_cast<int>(split.parent_of_part.size()) - 1, last = split.parts.part_count - 1;
+    for (const auto& [body, leaf] : {std::pair{0, last - 2}, {2, last - 2}, {43, last - 1}, {45, last}}) {
+      EXPECT_EQ(part[body], leaf) << "body " << body;
+      EXPECT_EQ(split.parent_of_part[leaf], root);
+    }
+    const Split alone = Splitter({partitioner, read_named("refiner", "fm"), false, 2}).run(chains({40}));
+    EXPECT_TRUE(std::equal(part.begin() + 3, part.begin() + 43, alone.parts.part_of_body.begin()));
+    EXPECT_EQ(alone.parent_of_part.size() + 3, split.parent_of_part.size());
+  }
+}
+
+TEST(NestedSplit, SmallIslandsAloneAreAllOfTheTree) {
+  const auto parents = [](const std::vector<int>& lengths) {
+    return Splitter(setup("mix@max-bodies=5", "fm", 2, true)).run(chains(lengths)).parent_of_part;
+  };
+  using Parents = std::vector<int>;
+  EXPECT_EQ(parents({}), Parents());
+  EXPECT_EQ(parents({5}), Parents{-1});
+  EXPECT_EQ(parents({1, 5, 2}), (Parents{3, 3, 3, -1}));
+}
+
+TEST(NestedSplit, RefusesWhoKeepsToNoBound) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / "parts") << "0\n1\n1\n";
+  const std::string file = "file@path=" + (directory / "parts").string();
+  EXPECT_NO_THROW(Splitter({read_named("partitioner", file), read_named("refiner", "none")}));
+  try {
+    const Splitter splitter(setup(file, "none", 2));
+    FAIL() << "made";
+  } catch (const std::invalid_argument& error) {
+    const std::string text = error.what();
+    EXPECT_TRUE(text.starts_with("partitioner file@")) << text;
+    EXPECT_NE(text.find("keeps to no max-bodies, so it cannot split by recursion"), std::string::npos)
+        << text;
+  }
+}
+
+TEST(NestedSplit, ArityIsAParameterOfTheSolver) {
+  const std::map<std::string, std::string> values = {{"arity", "3"}};
+  const Algorithm solver{"some", "some", Settings(values)};
+  EXPECT_EQ(arity_of(solver), 3);
+  EXPECT_EQ(arity_of(read_named("solver", "schur")), std::nullopt);
+}
+
+}  // namespace
+}  // namespace cleave

@@ -1,0 +1,235 @@
+// Trees of parts: what they must be whoever splits the sets, and the recursion against its slow twin.
+#include "partition/nested.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "partition/registry.h"
+#include "tests/partition/slow_nested.h"
+#include "tests/partition/test_graphs.h"
+#include "tests/partition/tree_fault.h"
+
+namespace cleave {
+
+// How GoogleTest prints the parameter of a failed test.
+static void PrintTo(const PartitionerEntry& entry, std::ostream* out) { *out << entry.name; }
+static void PrintTo(const RefinerEntry& entry, std::ostream* out) { *out << entry.name; }
+
+}  // namespace cleave
+
+namespace cleave::partition_test {
+namespace {
+
+constexpr std::uint64_t kSeeds = 120;
+
+std::vector<PartitionerEntry> rows_that_keep_to_max_bodies() {
+  std::vector<PartitionerEntry> rows;
+  for (const PartitionerEntry& entry : partitioners())
+    if (entry.promise.at_most_max_bodies) rows.push_back(entry);
+  return rows;
+}
+
+NestedPartition nest(const BodyGraph& graph, const SetSplitter& splitter) {
+  const auto split_set = [&](const BodyGraph& set, int most_bodies) {
+    Partition parts = splitter.grow(set, most_bodies);
+    splitter.refine(set, most_bodies, parts);
+    return parts;
+  };
+  return split_by_recursion(graph, splitter.max_bodies(), splitter.arity(), split_set);
+}
+
+// What is drawn for one seed.
+struct Draw {
+  explicit Draw(std::uint64_t seed) : bodies(random_bodies(seed)) {
+    Random random(seed + 7000);
+    grown = random_partition_options(random);
+    refined = random_refine_options(random);
+    refined.max_bodies = grown.max_bodies;
+    arity = random.integer(2, 5);
+    text = "seed " + std::to_string(seed) + " (" + describe(bodies) + "), arity " + std::to_string(arity) +
+           ": " + describe(grown) + "; " + describe(refined);
+  }
+  SetSplitter splitter(const PartitionerEntry& partitioner, const RefinerEntry& refiner) const {
+    return {algorithm_of(partitioner, grown), algorithm_of(refiner, refined), arity};
+  }
+
+  Bodies bodies;
+  PartitionOptions grown;
+  RefineOptions refined;
+  int arity;
+  std::string text;
+};
+
+class NestedContract : public testing::TestWithParam<std::tuple<PartitionerEntry, RefinerEntry>> {
+ protected:
+  static const PartitionerEntry& partitioner() { return std::get<0>(GetParam()); }
+  static const RefinerEntry& refiner() { return std::get<1>(GetParam()); }
+
+  // Bodies that a leaf may have: a set with more is split, but children that were to have no more than
+  // max_bodies are leaves as their refiner left them.
+  static int most_leaf_bodies(const Draw& draw) {
+    const std::vector<Parameter>& parameters = refiner().parameters;
+    const bool grows = std::ranges::count(parameters, "max-growth", &Parameter::name) > 0;
+    if (!grows) return draw.grown.max_bodies;
+    if (draw.refined.as_printed) return draw.bodies.count();
+    return static_cast<int>(std::floor((1 + draw.refined.max_growth) * draw.grown.max_bodies + 1e-9));
+  }
+};
+
+TEST_P(NestedContract, gives_a_tree_whose_leaves_are_small) {
+  int deep = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const Draw draw(seed);
+    const NestedPartition nested = nest(draw.bodies.graph(), draw.splitter(partitioner(), refiner()));
+    ASSERT_EQ(tree_fault(draw.bodies, nested), "") << draw.text;
+    for (const int size : part_sizes(nested.leaves)) ASSERT_LE(size, most_leaf_bodies(draw)) << draw.text;
+    const int inner = static_cast<int>(nested.parent_of_part.size()) - nested.leaves.part_count;
+    ASSERT_EQ(inner == 0, draw.bodies.count() <= draw.grown.max_bodies) << draw.text;
+    deep += inner > 2;
+  }
+  EXPECT_GT(deep, 20);
+}
+
+TEST_P(NestedContract, gives_the_same_tree_again) {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const Draw draw(seed);
+    const BodyGraph graph = draw.bodies.graph();
+    const SetSplitter splitter = draw.splitter(partitioner(), refiner());
+    const NestedPartition first = nest(graph, splitter);
+    for (const NestedPartition& other :
+         {nest(graph, splitter), nest(graph, draw.splitter(partitioner(), refiner()))}) {
+      ASSERT_EQ(first_difference(first.leaves, other.leaves), "") << draw.text;
+      ASSERT_EQ(first.parent_of_part, other.parent_of_part) << draw.text;
+    }
+  }
+}
+
+TEST_P(NestedContract, accepts_the_smallest_graphs_and_the_largest_arity) {
+  const auto algorithm = [](const auto& entry, int max_bodies) {
+    return Algorithm{entry.name, entry.name, [&] {
+                       auto values = defaults_of(entry).values();
+                       if (values.contains("max-bodies")) values["max-bodies"] = std::to_string(max_bodies);
+                       return Settings(values);
+                     }()};
+  };
+  const auto nested = [&](const Bodies& bodies, int max_bodies, int arity) {
+    return nest(bodies.graph(),
+                SetSplitter(algorithm(partitioner(), max_bodies), algorithm(refiner(), max_bodies), arity));
+  };
+  const Bodies triangle{"triangle", {1.0, 1.0, 1.0}, {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  const Bodies loose{"loose", {1.0, 1.0, 1.0, 1.0}, {}};
+  using Parents = std::vector<int>;
+  EXPECT_EQ(nested({}, 1, 2).parent_of_part, Parents());
+  EXPECT_EQ(nested({"one", {1.0}, {}}, 1, 2).parent_of_part, Parents{-1});
+  EXPECT_EQ(nested(triangle, 3, 2).parent_of_part, Parents{-1});
+  EXPECT_EQ(nested(triangle, std::numeric_limits<int>::max(), 2).parent_of_part, Parents{-1});
+  EXPECT_EQ(nested(triangle, 1, std::numeric_limits<int>::max()).parent_of_part, (Parents{3, 3, 3, -1}));
+  EXPECT_EQ(tree_fault(loose, nested(loose, 2, 2)), "");
+}
+
+// The check of trees must be able to fail: each tree is wrong in one way.
+TEST(TreeFault, tells_what_is_wrong_with_a_tree) {
+  const Bodies four{"four", {1, 1, 1, 1}, {{0, 1, 3}}};
+  const Partition leaves{{0, 1, 1, 2}, 3};
+  EXPECT_EQ(tree_fault(four, {leaves, {3, 3, 4, 4, -1}}), "");
+  EXPECT_EQ(tree_fault(four, {leaves, {3, 3, 3, -1}}), "");
+  EXPECT_NE(tree_fault(four, {leaves, {}}), "");
+  EXPECT_NE(tree_fault(four, {leaves, {3, 3, -1, -1}}), "");               // two roots
+  EXPECT_NE(tree_fault(four, {leaves, {3, 3, 4, 5, 5, -1}}), "");          // an only child
+  EXPECT_NE(tree_fault(four, {leaves, {4, 4, 3, -1, 3}}), "");             // a parent before its child
+  EXPECT_NE(tree_fault(four, {leaves, {2, 2, 4, 4, -1}}), "");             // a part that is no leaf
+  EXPECT_NE(tree_fault(four, {leaves, {4, 4, 4, 4, -1}}), "");             // an inner node without children
+  EXPECT_NE(tree_fault(four, {{{0, 1, 1, 3}, 4}, {4, 4, 4, 4, -1}}), "");  // an empty part
+  EXPECT_NE(tree_fault(four, {leaves, {4, 4, 4, -1, -1}}), "");            // two trees
+  EXPECT_NE(tree_fault(Bodies{}, {{}, {-1}}), "");                         // a node of nothing
+}
+
+// Every pair of twins, on the same draws.
+TEST(NestedTwin, agrees_with_the_recursion) {
+  int nodes = 0, joined = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const Draw draw(seed);
+    const BodyGraph graph = draw.bodies.graph();
+    for (const PartitionerTwin& partitioner : partitioner_twins()) {
+      for (const RefinerTwin& refiner : refiner_twins()) {
+        const auto row = [](const auto& table, const std::string& name) {
+          return *std::ranges::find(table, name, [](const auto& entry) { return std::string(entry.name); });
+        };
+        const RefinerEntry refiner_row = row(refiners(), refiner.name);
+        const RefineOptions refined = options_of(refiner_row, draw.refined);
+        const SlowNested twin =
+            slow_nested(draw.bodies, partitioner, draw.grown, refiner, refined, draw.arity);
+        const NestedPartition fast =
+            nest(graph, draw.splitter(row(partitioners(), partitioner.name), refiner_row));
+        SCOPED_TRACE(draw.text + ", " + partitioner.name + "+" + refiner.name);
+        ASSERT_EQ(first_difference(twin.nested.leaves, fast.leaves), "");
+        ASSERT_EQ(twin.nested.parent_of_part, fast.parent_of_part);
+        nodes += static_cast<int>(fast.parent_of_part.size());
+        joined += twin.joined;
+      }
+    }
+  }
+  EXPECT_GT(nodes, 10000);
+  EXPECT_GT(joined, 1000);
+}
+
+// Splits off one body at a time, which makes the deepest tree there is.
+TEST(Nested, takes_sets_that_lose_one_body_at_a_time) {
+  constexpr int kBodies = 3000;
+  const Bodies bodies{"loose", std::vector<double>(kBodies, 1.0), {}};
+  const NestedPartition nested = split_by_recursion(bodies.graph(), 1, 2, [](const BodyGraph& set, int) {
+    Partition parts{std::vector<int>(set.body_count(), 0), 2};
+    parts.part_of_body.back() = 1;
+    return parts;
+  });
+  ASSERT_EQ(nested.leaves.part_count, kBodies);
+  ASSERT_EQ(nested.parent_of_part.size(), 2u * kBodies - 1);
+  // The first child of the first child ... is body 0; each inner node has the next one up as its parent.
+  EXPECT_EQ(nested.leaves.part_of_body.front(), 0);
+  for (int inner = kBodies; inner < 2 * kBodies - 2; ++inner)
+    ASSERT_EQ(nested.parent_of_part[inner], inner + 1);
+}
+
+// By hand: a path of eight bodies, halved until two are left. Leaves in order of creation, inner nodes backwards.
+TEST(Nested, numbers_nodes_as_they_are_made) {
+  const Bodies path{"path",
+                    std::vector<double>(8, 1.0),
+                    {{0, 1, 3}, {1, 2, 3}, {2, 3, 3}, {3, 4, 3}, {4, 5, 3}, {5, 6, 3}, {6, 7, 3}}};
+  const auto halves = [](const BodyGraph& set, int most_bodies) {
+    Partition parts{{}, 2};
+    for (int body = 0; body < set.body_count(); ++body) parts.part_of_body.push_back(body / most_bodies);
+    return parts;
+  };
+  const NestedPartition nested = split_by_recursion(path.graph(), 2, 2, halves);
+  EXPECT_EQ(nested.leaves.part_of_body, (std::vector<int>{0, 0, 1, 1, 2, 2, 3, 3}));
+  EXPECT_EQ(nested.parent_of_part, (std::vector<int>{5, 5, 4, 4, 6, 6, -1}));
+}
+
+TEST(Nested, refuses_bounds_that_are_none) {
+  const auto never = [](const BodyGraph&, int) { return Partition(); };
+  EXPECT_THROW(split_by_recursion(BodyGraph(), 0, 2, never), std::invalid_argument);
+  EXPECT_THROW(split_by_recursion(BodyGraph(), 1, 1, never), std::invalid_argument);
+}
+
+constexpr auto kPairName = [](const auto& info) {
+  std::string name = std::get<0>(info.param).name + std::string("_") + std::get<1>(info.param).name;
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return !std::isalnum(c); }, '_');
+  return name;
+};
+INSTANTIATE_TEST_SUITE_P(All, NestedContract,
+                         testing::Combine(testing::ValuesIn(rows_that_keep_to_max_bodies()),
+                                          testing::ValuesIn(refiners().begin(), refiners().end())),
+                         kPairName);
+
+}  // namespace
+}  // namespace cleave::partition_test

@@ -1,0 +1,65 @@
+// Schedules of task graphs, against bounds that hold for every schedule and against cases done by hand.
+#include "solver/task_schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+
+#include "tests/solver/seeded_random.h"
+
+namespace cleave {
+namespace {
+
+using Waits = std::vector<std::pair<int, int>>;
+
+TaskGraph graph_of(int count, const Waits& waits) {
+  TaskGraph graph;
+  graph.build(count, waits);
+  return graph;
+}
+
+double makespan(const TaskGraph& graph, const std::vector<double>& task_ms, int workers) {
+  GraphSchedule schedule;
+  return schedule.makespan_ms(graph, task_ms, workers);
+}
+
+TEST(GraphScheduleTest, CasesByHand) {
+  EXPECT_EQ(makespan(graph_of(0, {}), {}, 2), 0);
+  EXPECT_EQ(makespan(graph_of(3, {{0, 1}, {1, 2}}), {1, 2, 4}, 5), 7);  // a chain
+  EXPECT_EQ(makespan(graph_of(3, {{0, 2}, {1, 2}}), {3, 2, 4}, 2), 7);  // two leaves and their parent
+  EXPECT_EQ(makespan(graph_of(3, {{0, 2}, {1, 2}}), {3, 2, 4}, 1), 9);
+  EXPECT_EQ(makespan(graph_of(4, {{0, 3}}), {1, 4, 4, 6}, 2),
+            8);  // the long way goes first: 1, 6 beside 4, 4
+  EXPECT_EQ(makespan(graph_of(5, {{0, 2}, {1, 2}, {2, 3}, {2, 4}}), {1, 2, 3, 4, 5}, 2), 10);
+}
+
+TEST(GraphScheduleTest, LiesBetweenTheBoundsOfEverySchedule) {
+  for (int seed = 0; seed < 300; ++seed) {
+    SeededRandom random(seed);
+    const int count = random.integer(1, 50);
+    std::set<std::pair<int, int>> waits;
+    std::vector<double> task_ms(count);
+    for (int later = 0; later < count; ++later) {
+      task_ms[later] = random.log_uniform(1e-3, 10);
+      for (int k = random.integer(0, 2); k > 0 && later > 0; --k)
+        waits.emplace(random.integer(0, later - 1), later);
+    }
+    const TaskGraph graph = graph_of(count, Waits(waits.begin(), waits.end()));
+    GraphSchedule schedule;
+    const double sum = std::accumulate(task_ms.begin(), task_ms.end(), 0.0);
+    const double path = schedule.critical_path_ms(graph, task_ms);
+    EXPECT_GE(path, *std::ranges::max_element(task_ms)) << "seed " << seed;
+    EXPECT_NEAR(schedule.makespan_ms(graph, task_ms, 1), sum, 1e-12 * sum) << "seed " << seed;
+    EXPECT_NEAR(schedule.makespan_ms(graph, task_ms, count), path, 1e-12 * sum) << "seed " << seed;
+    for (const int workers : {2, 3, 8}) {
+      const double found = schedule.makespan_ms(graph, task_ms, workers);
+      EXPECT_GE(found, std::max(path, sum / workers) * (1 - 1e-12)) << "seed " << seed;
+      EXPECT_LE(found, (sum / workers + path) * (1 + 1e-12)) << "seed " << seed;  // Graham 1969
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cleave
