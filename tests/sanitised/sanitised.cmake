@@ -27,7 +27,7 @@ add_executable(sanitised_tests ${CMAKE_CURRENT_LIST_DIR}/${PRESET}_faults_test.c
 target_link_libraries(sanitised_tests PRIVATE cleave_solver OpenMP::OpenMP_CXX GTest::gtest_main)
 add_test(NAME planted_faults COMMAND sanitised_tests)
 add_test(NAME scenes COMMAND ${CMAKE_COMMAND} -E env CLEAVE_BINARY_DIR=${CMAKE_BINARY_DIR} ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/scenes_test.py -v)
-set_tests_properties(planted_faults scenes PROPERTIES TIMEOUT 600 ${TEST_PROPERTIES})
+set_tests_properties(planted_faults scenes PROPERTIES TIMEOUT 1800 ${TEST_PROPERTIES})
 
 set(LEFT_OUT ${CMAKE_CURRENT_LIST_DIR}/left_out.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${LEFT_OUT})
