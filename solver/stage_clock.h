@@ -1,55 +1,21 @@
-// Times of the named stages of a solve, and what the same tasks would take on p workers.
+// The clock of a solve: times of its named stages, and what the same tasks would take on p workers.
 //
 // A parallel stage is a set of tasks (one per subsystem, branch or tile), independent or of a graph. Their schedule
 // on p workers (task_schedule.h) gives the makespan of the stage; a solve on p workers is then modelled as the sum
-// of the makespans of its parallel stages plus all serial time. Task
-// times add up to wall time on one thread only, so a solve on more threads has no model. The model is made
-// after the clock has stopped: during the solve task times are only put down.
+// of the makespans of its parallel stages plus all serial time. Task times add up to wall time on one thread only, so
+// a solve on more threads has no model. The model is made after the clock has stopped: during the solve task times are
+// only put down.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstddef>
-#include <limits>
 #include <span>
-#include <string_view>
 #include <vector>
 
+#include "solver/stage_times.h"
 #include "solver/task_schedule.h"
 
 namespace cleave {
-
-enum class Stage {
-  analyze,
-  predict,
-  assemble,
-  factor_local,
-  form_interface,
-  factor_interface,
-  solve,
-  check,
-  refine
-};
-inline constexpr std::array<std::string_view, 9> kStageNames = {
-    "analyze",          "predict", "assemble", "factor_local", "form_interface",
-    "factor_interface", "solve",   "check",    "refine"};
-inline constexpr std::array<int, 5> kModelWorkers = {1, 2, 4, 8, 16};
-
-// NaN where nothing was measured.
-struct StageTimes {
-  std::array<double, kStageNames.size()> stage_ms = unmeasured<kStageNames.size()>();
-  double total_ms = kNotTimed;  // t_s; t_s_other = total - sum of the stages
-  std::array<double, kModelWorkers.size()> model_ms = unmeasured<kModelWorkers.size()>();
-
- private:
-  static constexpr double kNotTimed = std::numeric_limits<double>::quiet_NaN();
-  template <std::size_t N>
-  static constexpr std::array<double, N> unmeasured() {
-    std::array<double, N> values{};
-    values.fill(kNotTimed);
-    return values;
-  }
-};
 
 class StageClock {
  public:

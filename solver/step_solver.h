@@ -13,7 +13,7 @@
 
 #include "solver/parts.h"
 #include "solver/solution.h"
-#include "solver/stage_clock.h"
+#include "solver/stage_times.h"
 #include "solver/step_problem.h"
 #include "solver/stop.h"
 

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "solver/impulse_set.h"
+#include "solver/stage_clock.h"
 
 namespace cleave {
 namespace {

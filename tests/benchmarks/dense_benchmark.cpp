@@ -29,6 +29,7 @@
 #include "harness/files/problem_file.h"
 #include "partition/registry.h"
 #include "solver/kernels/kernel.h"
+#include "solver/stage_clock.h"
 #include "solver/linear/dense_cholesky.h"
 #include "solver/linear/dense_panel.h"
 #include "tests/benchmarks/multiply_add_peak.h"

@@ -27,6 +27,7 @@
 #include "solver/kernels/kernel.h"
 #include "solver/registry.h"
 #include "solver/residual.h"
+#include "solver/stage_clock.h"
 #include "tests/benchmarks/cholmod_reference.h"
 
 namespace cleave {

@@ -62,7 +62,7 @@ def step_record_columns():
                   if name != "path"]  # a file's name is in no column
     table = (ROOT / "harness" / "experiment" / "cell_measures.cpp").read_text()
     parameters += re.findall(r'\{"(\w+)",', table)
-    clock = (ROOT / "solver" / "stage_clock.h").read_text()
+    clock = (ROOT / "solver" / "stage_times.h").read_text()
     stages = re.findall(r'"(\w+)"', re.search(r"kStageNames = \{(.*?)\}", clock, re.S).group(1))
     workers = re.search(r"kModelWorkers = \{(.*?)\}", clock).group(1).replace(" ", "").split(",")
     return set(columns) | set(parameters) | {f"t_s_{stage}_ms" for stage in stages

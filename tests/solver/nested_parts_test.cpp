@@ -40,9 +40,9 @@ Tree sliced_tree(int bodies, int leaves) {
   return tree;
 }
 
-StepProblem pile(double cfm = 1e-5) {
+StepProblem pile(double cfm = 1e-5, int columns = 10) {
   PileOptions options;
-  options.columns = 10;
+  options.columns = columns;
   options.cfm = cfm;
   return make_pile(3, options);
 }
@@ -110,13 +110,13 @@ TEST(SchurNestedTest, OneLevelIsSchurBodies) {
 }
 
 TEST(BranchKernelTest, GivesTheSameBytesOnAnyNumberOfThreadsInAnyOrder) {
-  const StepProblem problem = pile();
+  const StepProblem problem = pile(1e-5, 6);
   const Tree tree = sliced_tree(problem.body_count(), 9);
   for (const char* solver :
        {"exact", "pivot:schur-bodies", "interior-point:schur-nested", "pivot:schur-rows"}) {
     const Solution one = solved(solver, problem, tree.parts());
     for (const int threads : {1, 2, 3, 7}) {
-      for (const int seed : {0, 1, 2}) {
+      for (const int seed : {0, 1}) {
         WorkerTeam::shared(threads).shuffle(seed);
         const Solution many = solved(solver, problem, tree.parts(), threads);
         WorkerTeam::shared(threads).shuffle(0);

@@ -1,0 +1,43 @@
+// Times of the named stages of a solve, as solvers report them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <string_view>
+
+namespace cleave {
+
+enum class Stage {
+  analyze,
+  predict,
+  assemble,
+  factor_local,
+  form_interface,
+  factor_interface,
+  solve,
+  check,
+  refine
+};
+inline constexpr std::array<std::string_view, 9> kStageNames = {
+    "analyze",          "predict", "assemble", "factor_local", "form_interface",
+    "factor_interface", "solve",   "check",    "refine"};
+inline constexpr std::array<int, 5> kModelWorkers = {1, 2, 4, 8, 16};
+
+// NaN where nothing was measured. model_ms: the same solve on so many workers (stage_clock.h).
+struct StageTimes {
+  std::array<double, kStageNames.size()> stage_ms = unmeasured<kStageNames.size()>();
+  double total_ms = kNotTimed;  // t_s; t_s_other = total - sum of the stages
+  std::array<double, kModelWorkers.size()> model_ms = unmeasured<kModelWorkers.size()>();
+
+ private:
+  static constexpr double kNotTimed = std::numeric_limits<double>::quiet_NaN();
+  template <std::size_t N>
+  static constexpr std::array<double, N> unmeasured() {
+    std::array<double, N> values{};
+    values.fill(kNotTimed);
+    return values;
+  }
+};
+
+}  // namespace cleave
