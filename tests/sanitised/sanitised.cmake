@@ -19,9 +19,7 @@ else()
       "ASAN_OPTIONS=exitcode=66:detect_stack_use_after_return=1:check_initialization_order=1:allocator_may_return_null=1")
 endif()
 
-# Half of what the compiler takes for a test goes into optimising it together with its checks. Oracles need it.
-set(TEST_COMPILE_OPTIONS "")
-set(PLAIN_TEST_OPTIONS -O0)
+set(TEST_COMPILE_OPTIONS "")  # those of the preset
 
 # Planted faults show that the sanitisers are there and that a finding fails.
 add_executable(sanitised_tests ${CMAKE_CURRENT_LIST_DIR}/${PRESET}_faults_test.cpp)
