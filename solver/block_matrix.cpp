@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "solver/counting_sort.h"
 #include "solver/linear/dense_block.h"
 
 namespace cleave {
@@ -21,6 +22,13 @@ void add_block(double* target, int ld, const double* block, int block_ld, bool t
 // A block of a 12x12 Gram matrix, out of it.
 void copy_block(const double* gram, double* block) {
   for (int c = 0; c < 6; ++c) std::copy_n(gram + 12 * c, 6, block + 6 * c);
+}
+
+void sort_by_branch(std::span<const int> branch_of_item, int branches, std::vector<int>& first,
+                    std::vector<int>& items) {
+  sort_into_buckets(
+      static_cast<int>(branch_of_item.size()), branches, [&](int item) { return branch_of_item[item]; },
+      first, items);
 }
 
 }  // namespace
@@ -72,20 +80,6 @@ void BlockMatrix::list_edges(const PreparedStep& step, std::span<const int> loca
   }
 }
 
-// Counting sort, stable: items of branch b at first[b] .. first[b + 1].
-void BlockMatrix::sort_by_branch(std::span<const int> branch_of_item, std::vector<int>& first,
-                                 std::vector<int>& items) const {
-  first.assign(branch_count() + 1, 0);
-  items.resize(branch_of_item.size());
-  for (int branch : branch_of_item) ++first[branch];
-  for (int branch = 0, begin = 0; branch <= branch_count(); ++branch)
-    begin += std::exchange(first[branch], begin);
-  for (std::size_t i = 0; i < branch_of_item.size(); ++i)
-    items[first[branch_of_item[i]]++] = static_cast<int>(i);
-  for (int branch = branch_count(); branch > 0; --branch) first[branch] = first[branch - 1];
-  first[0] = 0;
-}
-
 void BlockMatrix::place_bodies() {
   const BlockSymbolic& symbolic = cholesky_.symbolic();
   local_branch_.clear();
@@ -93,7 +87,7 @@ void BlockMatrix::place_bodies() {
     const int supernode = symbolic.supernode_at_position()[symbolic.position_of_node()[local]];
     local_branch_.push_back(symbolic.supernodes()[supernode].branch);
   }
-  sort_by_branch(local_branch_, branch_local_first_, branch_locals_);
+  sort_by_branch(local_branch_, branch_count(), branch_local_first_, branch_locals_);
 }
 
 void BlockMatrix::place_groups(const PreparedStep& step, std::span<const int> local_of_body,
@@ -107,7 +101,7 @@ void BlockMatrix::place_groups(const PreparedStep& step, std::span<const int> lo
   };
   group_branch_.clear();
   for (int g : groups) group_branch_.push_back(std::min(branches_of(g).first, branches_of(g).second));
-  sort_by_branch(group_branch_, entry_first_, group_order_);
+  sort_by_branch(group_branch_, branch_count(), entry_first_, group_order_);
   entries_.clear();
   late_places_.clear();
   late_branch_.clear();
@@ -131,7 +125,7 @@ void BlockMatrix::place_groups(const PreparedStep& step, std::span<const int> lo
     }
     entries_.push_back(entry);
   }
-  sort_by_branch(late_branch_, late_first_, late_slots_);
+  sort_by_branch(late_branch_, branch_count(), late_first_, late_slots_);
   late_blocks_.resize(36 * late_places_.size());
   late_any_.resize(late_places_.size());
 }

@@ -55,8 +55,6 @@ class BlockMatrix {
   };
 
   void number(const PreparedStep& step);
-  void sort_by_branch(std::span<const int> branch_of_item, std::vector<int>& first,
-                      std::vector<int>& items) const;
   void list_edges(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
   void place_bodies();
   void place_groups(const PreparedStep& step, std::span<const int> local_of_body,

@@ -8,6 +8,8 @@
 #include <new>
 #include <numeric>
 
+#include "solver/counting_sort.h"
+
 namespace cleave {
 namespace {
 
@@ -217,25 +219,19 @@ void BlockSymbolic::list_rows() {
     s.row_count = static_cast<int>(rows_.size()) - s.first_row;
   }
   row_in_parent_.assign(rows_.size(), -1);
-  child_first_.assign(count + 1, 0);
   for (int i = 0; i < count; ++i) {
     Supernode& s = supernodes_[i];
     s.first_descendant = i;
     if (s.rows_below() == 0) continue;
     s.parent = supernode_at_position_[rows_[s.first_row + s.width]];
-    ++child_first_[s.parent + 1];
     const Supernode& up = supernodes_[s.parent];
     for (int k = s.width, q = 0; k < s.row_count; ++k) {
       while (rows_[up.first_row + q] != rows_[s.first_row + k]) ++q;
       row_in_parent_[s.first_row + k] = q;
     }
   }
-  std::partial_sum(child_first_.begin(), child_first_.end(), child_first_.begin());
-  children_.resize(child_first_[count]);
-  stack_.assign(child_first_.begin(), child_first_.end());
-  for (int i = 0; i < count; ++i) {
-    if (supernodes_[i].parent >= 0) children_[stack_[supernodes_[i].parent]++] = i;
-  }
+  sort_into_buckets(
+      count, count, [this](int i) { return supernodes_[i].parent; }, child_first_, children_);
   for (int i = 0; i < count; ++i) {
     for (int child : children(i)) {
       supernodes_[i].first_descendant =
@@ -287,20 +283,14 @@ void BlockSymbolic::find_branches() {
 }
 
 void BlockSymbolic::list_branch_children() {
-  const int count = static_cast<int>(branches_.size());
-  branch_child_first_.assign(count + 1, 0);
   for (Branch& branch : branches_) {
     const int up = supernodes_[branch.last].parent;
-    if (up < 0) continue;
-    branch.parent = supernodes_[up].branch;
-    ++branch_child_first_[branch.parent + 1];
+    if (up >= 0) branch.parent = supernodes_[up].branch;
   }
-  std::partial_sum(branch_child_first_.begin(), branch_child_first_.end(), branch_child_first_.begin());
-  branch_children_.resize(branch_child_first_[count]);
-  stack_.assign(branch_child_first_.begin(), branch_child_first_.end());
-  for (int b = 0; b < count; ++b) {
-    if (branches_[b].parent >= 0) branch_children_[stack_[branches_[b].parent]++] = b;
-  }
+  const int count = static_cast<int>(branches_.size());
+  sort_into_buckets(
+      count, count, [this](int branch) { return branches_[branch].parent; }, branch_child_first_,
+      branch_children_);
 }
 
 // The rows of a supernode above its branch are among the rows below the branch's root, and both lists ascend.

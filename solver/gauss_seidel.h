@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <span>
 
+#include "solver/group_products.h"
 #include "solver/prepared_step.h"
 #include "solver/stop.h"
 
@@ -19,15 +20,11 @@ namespace cleave {
 void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double> impulse, std::span<double> v,
                          const std::atomic<bool>* stop);
 
-// w_r summed in four lanes, which compilers turn into vector instructions. u (12): velocities of the row's two bodies.
+// w_r with J_r u summed in lanes. u (12): velocities of the row's two bodies.
 struct LaneSlack {
   double operator()(const StepProblem& problem, int row, const double* u, double impulse) const {
-    const double* j = problem.jacobian.data() + 12 * row;
-    double sum[4] = {};
-    for (int c = 0; c < 12; c += 4) {
-      for (int k = 0; k < 4; ++k) sum[k] += j[c + k] * u[c + k];
-    }
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]) + problem.compliance[row] * impulse - problem.rhs[row];
+    return row_times(problem.jacobian.data() + 12L * row, u) + problem.compliance[row] * impulse -
+           problem.rhs[row];
   }
 };
 

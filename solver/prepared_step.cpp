@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+
+#include "solver/counting_sort.h"
+#include "solver/group_products.h"
 
 namespace cleave {
 namespace {
@@ -76,19 +78,11 @@ void PreparedStep::list_groups() {
 }
 
 void PreparedStep::list_sides() {
-  side_first_.assign(body_count() + 1, 0);
-  for (const RowGroup& g : groups_) {
-    ++side_first_[g.body_a + 1];
-    if (g.body_b >= 0) ++side_first_[g.body_b + 1];
-  }
-  std::partial_sum(side_first_.begin(), side_first_.end(), side_first_.begin());
-  sides_.resize(side_first_.back());
-  for (std::size_t g = 0; g < groups_.size(); ++g) {
-    sides_[side_first_[groups_[g].body_a]++] = static_cast<int>(2 * g);
-    if (groups_[g].body_b >= 0) sides_[side_first_[groups_[g].body_b]++] = static_cast<int>(2 * g + 1);
-  }
-  for (int body = body_count(); body > 0; --body) side_first_[body] = side_first_[body - 1];
-  side_first_[0] = 0;
+  const auto body_of_side = [this](int side) {
+    const RowGroup& g = groups_[side / 2];
+    return side % 2 == 0 ? g.body_a : g.body_b;
+  };
+  sort_into_buckets(static_cast<int>(2 * groups_.size()), body_count(), body_of_side, side_first_, sides_);
 }
 
 void PreparedStep::prepare_bodies(const Chunk& chunk) {
@@ -150,23 +144,15 @@ void PreparedStep::add_transpose(const double* rows, std::span<const double> x, 
                                  std::span<double> out) const {
   run(group_chunks_, [&](const Chunk& chunk) {
     for (int g = chunk.first; g < chunk.last; ++g) {
-      double sum[12] = {};
-      for (int r = groups_[g].first_row; r < groups_[g].first_row + groups_[g].row_count; ++r) {
-        const double* row = rows + 12L * r;
-        for (int c = 0; c < 12; ++c) sum[c] += row[c] * x[r];
-      }
+      double sum[12];
+      sum_rows(
+          groups_[g], rows, [&](int r) { return x[r]; }, sum);
       std::copy_n(sum, 12, group_sums_.data() + 12L * g);
     }
   });
   run(body_chunks_, [&](const Chunk& chunk) {
-    for (int body = chunk.first; body < chunk.last; ++body) {
-      double total[6];
-      std::copy_n(base.data() + 6L * body, 6, total);
-      for (const int side : sides_of_body(body)) {
-        for (int c = 0; c < 6; ++c) total[c] += group_sums_[6L * side + c];
-      }
-      std::copy_n(total, 6, out.data() + 6L * body);
-    }
+    for (int body = chunk.first; body < chunk.last; ++body)
+      add_sides(sides_of_body(body), group_sums_.data(), base.data() + 6L * body, out.data() + 6L * body);
   });
 }
 
@@ -178,17 +164,10 @@ void PreparedStep::jacobian_times(const Chunk& chunk, std::span<const double> v,
                                   std::span<double> out) const {
   for (int i = chunk.first; i < chunk.last; ++i) {
     const RowGroup& g = groups_[i];
-    double both[12] = {};
-    std::copy_n(v.data() + 6L * g.body_a, 6, both);
-    if (g.body_b >= 0) std::copy_n(v.data() + 6L * g.body_b, 6, both + 6);
-    for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
-      const double* j = problem_->jacobian.data() + 12L * r;
-      double sum[4] = {};
-      for (int c = 0; c < 12; c += 4) {
-        for (int k = 0; k < 4; ++k) sum[k] += j[c + k] * both[c + k];
-      }
-      out[r] = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    }
+    double both[12];
+    load_pair(v.data() + 6L * g.body_a, g.body_b < 0 ? nullptr : v.data() + 6L * g.body_b, both);
+    for (int r = g.first_row; r < g.first_row + g.row_count; ++r)
+      out[r] = row_times(problem_->jacobian.data() + 12L * r, both);
   }
 }
 

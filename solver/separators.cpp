@@ -1,8 +1,8 @@
 #include "solver/separators.h"
 
 #include <algorithm>
-#include <numeric>
 
+#include "solver/counting_sort.h"
 #include "solver/vertex_cover.h"
 
 namespace cleave {
@@ -43,21 +43,18 @@ int Separators::node_above(int a, int b) const {
 }
 
 void Separators::sort_edges(const PreparedStep& step, std::span<const int> part_of_body) {
-  unsorted_.clear();
-  unsorted_node_.clear();
-  edge_first_.assign(node_count_ + 1, 0);
+  edges_.clear();
+  node_of_edge_.clear();
   for (const RowGroup& group : step.groups()) {
     if (group.body_b < 0) continue;
     const int a = part_of_body[group.body_a], b = part_of_body[group.body_b];
     if (a == b) continue;
-    unsorted_.emplace_back(group.body_a, group.body_b);
-    unsorted_node_.push_back(node_above(a, b));
-    ++edge_first_[unsorted_node_.back() + 1];
+    edges_.emplace_back(group.body_a, group.body_b);
+    node_of_edge_.push_back(node_above(a, b));
   }
-  std::partial_sum(edge_first_.begin(), edge_first_.end(), edge_first_.begin());
-  edges_.resize(unsorted_.size());
-  bodies_.assign(edge_first_.begin(), edge_first_.end());
-  for (std::size_t k = 0; k < unsorted_.size(); ++k) edges_[bodies_[unsorted_node_[k]]++] = unsorted_[k];
+  sort_into_buckets(
+      static_cast<int>(edges_.size()), node_count_, [this](int edge) { return node_of_edge_[edge]; },
+      edge_first_, edge_order_);
 }
 
 // Bodies are numbered anew, in their order, so that the work follows the size of the cut.
@@ -65,9 +62,9 @@ void Separators::cover(int node) {
   bodies_.clear();
   local_edges_.clear();
   for (int k = edge_first_[node]; k < edge_first_[node + 1]; ++k) {
-    const auto [a, b] = edges_[k];
+    const auto [a, b] = edges_[edge_order_[k]];
     if (node_of_body_[a] >= part_count_ || node_of_body_[b] >= part_count_) continue;  // covered above
-    local_edges_.push_back(edges_[k]);
+    local_edges_.emplace_back(a, b);
     bodies_.insert(bodies_.end(), {a, b});
   }
   std::ranges::sort(bodies_);

@@ -32,11 +32,11 @@ class Separators {
 
   int part_count_ = 0, node_count_ = 0;
   std::vector<int> node_of_body_;
-  std::vector<int> parent_, depth_;         // by node; the root is its own parent
-  std::vector<std::pair<int, int>> edges_;  // cut edges by the node that cuts them
-  std::vector<int> edge_first_;             // (nodes + 1)
-  std::vector<std::pair<int, int>> unsorted_, local_edges_;
-  std::vector<int> unsorted_node_, local_of_body_, bodies_;
+  std::vector<int> parent_, depth_;                          // by node; the root is its own parent
+  std::vector<std::pair<int, int>> edges_;                   // that are cut
+  std::vector<int> node_of_edge_, edge_first_, edge_order_;  // by the node that cuts them
+  std::vector<std::pair<int, int>> local_edges_;             // scratch
+  std::vector<int> local_of_body_, bodies_;                  // scratch
 };
 
 }  // namespace cleave

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numeric>
 
+#include "solver/counting_sort.h"
+
 namespace cleave {
 namespace {
 
@@ -115,13 +117,9 @@ void SlabSweeps::color_groups(const PreparedStep& step) {
 }
 
 void SlabSweeps::sort_groups(const PreparedStep& step) {
-  const auto place = [this](std::size_t g) { return color_first_[set_of_group_[g]] + color_of_group_[g]; };
-  group_first_.assign(color_first_.back() + 1, 0);
-  for (std::size_t g = 0; g < set_of_group_.size(); ++g) ++group_first_[place(g) + 1];
-  std::partial_sum(group_first_.begin(), group_first_.end(), group_first_.begin());
-  groups_.resize(set_of_group_.size());
-  group_count_.assign(group_first_.begin(), group_first_.end());
-  for (std::size_t g = 0; g < groups_.size(); ++g) groups_[group_count_[place(g)]++] = static_cast<int>(g);
+  const auto color = [this](int g) { return color_first_[set_of_group_[g]] + color_of_group_[g]; };
+  sort_into_buckets(static_cast<int>(set_of_group_.size()), color_first_.back(), color, group_first_,
+                    groups_);
   const auto rows = [&](int g) { return step.groups()[g].row_count; };
   for (std::size_t c = 0; c + 1 < group_first_.size(); ++c) {
     std::sort(groups_.begin() + group_first_[c], groups_.begin() + group_first_[c + 1],
@@ -168,11 +166,10 @@ void SlabSweeps::build_graph() {
 // set, in the order in which they are visited.
 void SlabSweeps::assign_places(const PreparedStep& step) {
   const int n = step.body_count();
-  slab_first_.assign(slab_count_ + 1, 0);
-  for (int body = 0; body < n; ++body) ++slab_first_[slab_of_body_[body] + 1];
-  std::partial_sum(slab_first_.begin(), slab_first_.end(), slab_first_.begin());
+  sort_into_buckets(
+      n, slab_count_, [this](int body) { return slab_of_body_[body]; }, slab_first_, queue_);
   place_of_body_.resize(n);
-  for (int body = 0; body < n; ++body) place_of_body_[body] = slab_first_[slab_of_body_[body]]++;
+  for (int place = 0; place < n; ++place) place_of_body_[queue_[place]] = place;
   bodies_.resize(n + 1);
   bodies_[n] = {};
   place_of_group_.resize(groups_.size());

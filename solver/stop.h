@@ -12,12 +12,8 @@ class SolveStopped : public std::exception {
   const char* what() const noexcept override { return "stopped while solving"; }
 };
 
-inline bool is_stop_asked(const std::atomic<bool>* stop) {
-  return stop != nullptr && stop->load(std::memory_order_relaxed);
-}
-
 inline void check_stop(const std::atomic<bool>* stop) {
-  if (is_stop_asked(stop)) throw SolveStopped();
+  if (stop != nullptr && stop->load(std::memory_order_relaxed)) throw SolveStopped();
 }
 
 }  // namespace cleave

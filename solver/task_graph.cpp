@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "solver/counting_sort.h"
+
 namespace cleave {
 
 void TaskGraph::build(int task_count, std::span<const std::pair<int, int>> waits,
@@ -10,17 +12,14 @@ void TaskGraph::build(int task_count, std::span<const std::pair<int, int>> waits
   assert(places.empty() || static_cast<int>(places.size()) == task_count);
   places_.assign(places.begin(), places.end());
   wait_count_.assign(task_count, 0);
-  next_first_.assign(task_count + 1, 0);
-  next_.resize(waits.size());
   for (const auto& [earlier, later] : waits) {
     assert(0 <= earlier && earlier < later && later < task_count);
     ++wait_count_[later];
-    ++next_first_[earlier];
   }
-  for (int task = 0, begin = 0; task <= task_count; ++task) begin += std::exchange(next_first_[task], begin);
-  for (const auto& [earlier, later] : waits) next_[next_first_[earlier]++] = later;
-  for (int task = task_count; task > 0; --task) next_first_[task] = next_first_[task - 1];
-  next_first_[0] = 0;
+  sort_into_buckets(
+      static_cast<int>(waits.size()), task_count, [&](int wait) { return waits[wait].first; }, next_first_,
+      next_);
+  for (int& next : next_) next = waits[next].second;
   for (int task = 0; task < task_count; ++task) {
     std::sort(next_.begin() + next_first_[task], next_.begin() + next_first_[task + 1]);
   }

@@ -1,5 +1,6 @@
 #include "solver/worker_team.h"
 
+#include <execinfo.h>
 #include <immintrin.h>
 #include <omp.h>
 #include <sys/resource.h>
@@ -11,6 +12,7 @@
 #include <cstring>
 #include <map>
 #include <memory>
+#include <new>
 #include <optional>
 #include <random>
 #include <stdexcept>
@@ -98,12 +100,20 @@ void check_threads(int count) {
   if (!refusal.empty()) throw std::runtime_error(refusal);
 }
 
+// OpenMP's threads end by pthread_exit, for which the C library loads its unwinder the first time it needs it, and ends
+// the program where there is no memory left then. So it is made to need it now.
+void load_unwinder() {
+  void* caller = nullptr;
+  if (::backtrace(&caller, 1) == 0) throw std::bad_alloc();
+}
+
 }  // namespace
 
 WorkerTeam::WorkerTeam(int threads)
     : threads_(threads), queues_(std::make_unique<Queue[]>(threads)), home_count_(threads) {
   if (threads == 1) return;
   asked_look_out();  // its error belongs to the caller
+  load_unwinder();
   check_threads(threads);
   // The first member of the region has the place of the caller and only waits for the others.
   workers_ = std::thread([this] {

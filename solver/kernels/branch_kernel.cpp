@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solver/group_products.h"
+
 namespace cleave {
 
 void BranchKernel::bind(const PreparedStep& step) {
@@ -95,45 +97,32 @@ bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
 }
 
 void BranchKernel::reduce(const Chunk& chunk, std::span<const double> f_r) {
-  const double *jacobian = rows_.jacobian(), *d = rows_.d().data();
+  const std::span<const double> d = rows_.d();
   for (int g = chunk.first; g < chunk.last; ++g) {
-    const RowGroup& group = step_->groups()[g];
-    double sum[12] = {};
-    for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
-      const double weighted = d[r] * f_r[r];
-      for (int c = 0; c < 12; ++c) sum[c] += jacobian[12L * r + c] * weighted;
-    }
+    double sum[12];
+    sum_rows(
+        step_->groups()[g], rows_.jacobian(), [&](int r) { return d[r] * f_r[r]; }, sum);
     std::copy_n(sum, 12, group_sums_.data() + 12L * g);
   }
 }
 
 void BranchKernel::gather(const Chunk& chunk, std::span<const double> f_v) {
   const auto position = matrix_.cholesky().symbolic().position_of_node();
-  for (int body = chunk.first; body < chunk.last; ++body) {
-    double total[6];
-    std::copy_n(f_v.data() + 6L * body, 6, total);
-    for (const int side : step_->sides_of_body(body)) {
-      for (int c = 0; c < 6; ++c) total[c] += group_sums_[6L * side + c];
-    }
-    std::copy_n(total, 6, x_.data() + 6L * position[body]);
-  }
+  for (int body = chunk.first; body < chunk.last; ++body)
+    add_sides(step_->sides_of_body(body), group_sums_.data(), f_v.data() + 6L * body,
+              x_.data() + 6L * position[body]);
 }
 
 void BranchKernel::expand(const Chunk& chunk, std::span<const double> f_r, std::span<double> dlambda) const {
-  const double *jacobian = rows_.jacobian(), *d = rows_.d().data();
+  const std::span<const double> d = rows_.d();
   const auto position = matrix_.cholesky().symbolic().position_of_node();
   for (int g = chunk.first; g < chunk.last; ++g) {
     const RowGroup& group = step_->groups()[g];
-    double both[12] = {};
-    std::copy_n(x_.data() + 6L * position[group.body_a], 6, both);
-    if (group.body_b >= 0) std::copy_n(x_.data() + 6L * position[group.body_b], 6, both + 6);
-    for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
-      double sum[4] = {};
-      for (int c = 0; c < 12; c += 4) {
-        for (int k = 0; k < 4; ++k) sum[k] += jacobian[12L * r + c + k] * both[c + k];
-      }
-      dlambda[r] = d[r] * (f_r[r] - ((sum[0] + sum[1]) + (sum[2] + sum[3])));
-    }
+    double both[12];
+    load_pair(x_.data() + 6L * position[group.body_a],
+              group.body_b < 0 ? nullptr : x_.data() + 6L * position[group.body_b], both);
+    for (int r = group.first_row; r < group.first_row + group.row_count; ++r)
+      dlambda[r] = d[r] * (f_r[r] - row_times(rows_.jacobian() + 12L * r, both));
   }
 }
 

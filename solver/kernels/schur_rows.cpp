@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "solver/block_matrix.h"
+#include "solver/group_products.h"
 #include "solver/interface_split.h"
 #include "solver/kernels/kernel.h"
 #include "solver/linear/dense_block.h"
@@ -245,18 +246,16 @@ bool SchurRowsKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
 void SchurRowsKernel::reduce(int i, std::span<const double> f_v, std::span<const double> f_r) {
   Part& part = parts_[i];
   const PartRows& rows = split_.parts[i];
-  const double *jacobian = rows_.jacobian(), *d = rows_.d().data();
+  const std::span<const double> d = rows_.d();
   part.by_body.resize(6 * rows.bodies.size());
   for (std::size_t k = 0; k < rows.bodies.size(); ++k) {
     std::copy_n(f_v.data() + 6 * rows.bodies[k], 6, part.by_body.data() + 6 * k);
   }
   for (int g : rows.groups) {
     const RowGroup& group = step_->groups()[g];
-    double sum[12] = {};
-    for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
-      const double* j = jacobian + 12 * r;
-      for (int c = 0; c < 12; ++c) sum[c] += j[c] * (d[r] * f_r[r]);
-    }
+    double sum[12];
+    sum_rows(
+        group, rows_.jacobian(), [&](int r) { return d[r] * f_r[r]; }, sum);
     double* a = part.by_body.data() + 6 * split_.local_of_body[group.body_a];
     for (int c = 0; c < 6; ++c) a[c] += sum[c];
     if (group.body_b < 0) continue;

@@ -106,7 +106,7 @@ class MisbehavingTest(TortureCase):
                              "kills": "verify: exit code 1"})
 
     def test_half_files(self):
-        self.check("write_half", {"kills": "that is broken"}, count=4)
+        self.check("write_half", {"kills": "that is broken"}, count=6)
 
     def test_commands_that_do_not_complete_after_a_kill(self):
         self.check("refuse_again", {"kills": "again: exit code 1"})

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <ostream>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -16,15 +15,8 @@
 #include "harness/base/numbers.h"
 #include "partition/registry.h"
 #include "tests/partition/brute_force.h"
+#include "tests/partition/printed_rows.h"
 #include "tests/partition/test_graphs.h"
-
-namespace cleave {
-
-// How GoogleTest prints the parameter of a failed test.
-static void PrintTo(const PartitionerEntry& entry, std::ostream* out) { *out << entry.name; }
-static void PrintTo(const RefinerEntry& entry, std::ostream* out) { *out << entry.name; }
-
-}  // namespace cleave
 
 namespace cleave::partition_test {
 namespace {

@@ -7,24 +7,16 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
-#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <vector>
 
 #include "partition/registry.h"
+#include "tests/partition/printed_rows.h"
 #include "tests/partition/slow_nested.h"
 #include "tests/partition/test_graphs.h"
 #include "tests/partition/tree_fault.h"
-
-namespace cleave {
-
-// How GoogleTest prints the parameter of a failed test.
-static void PrintTo(const PartitionerEntry& entry, std::ostream* out) { *out << entry.name; }
-static void PrintTo(const RefinerEntry& entry, std::ostream* out) { *out << entry.name; }
-
-}  // namespace cleave
 
 namespace cleave::partition_test {
 namespace {

@@ -63,12 +63,17 @@ TEST(DenseCholeskyTest, SolvesAsEigenDoes) {
   }
 }
 
-TEST(DenseCholeskyTest, GivesTheSameBytesOnAnyNumberOfThreads) {
+TEST(DenseCholeskyTest, GivesTheSameBytesOnAnyNumberOfThreadsInAnyOrder) {
   for (const int size : kSizes) {
     const Eigen::MatrixXd a = random_positive(size, size);
     const std::vector<double> one = solved(a, 1);
-    for (const int threads : {2, 3, 5}) {
-      EXPECT_TRUE(same_bytes(solved(a, threads), one)) << "size " << size << ", " << threads << " threads";
+    for (const int threads : {1, 2, 3, 5}) {
+      for (const int seed : {0, 1, 2}) {
+        WorkerTeam::shared(threads).shuffle(seed);
+        EXPECT_TRUE(same_bytes(solved(a, threads), one))
+            << "size " << size << ", " << threads << " threads, seed " << seed;
+        WorkerTeam::shared(threads).shuffle(0);
+      }
     }
   }
 }

@@ -1,9 +1,13 @@
 #include "solver/worker_team.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
+#include <cstdlib>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -185,6 +189,26 @@ TEST(WorkerTeamTest, IsSharedByThreadCount) {
   EXPECT_EQ(&WorkerTeam::shared(2), &WorkerTeam::shared(2));
   EXPECT_NE(&WorkerTeam::shared(2), &WorkerTeam::shared(3));
   EXPECT_EQ(WorkerTeam::shared(3).threads(), 3);
+}
+
+// Leaves this process no byte to allocate.
+void take_all_memory() {
+  const rlimit no_more{0, 0};
+  if (::setrlimit(RLIMIT_AS, &no_more) != 0) std::abort();
+  for (std::size_t size = 1 << 20; size >= 8; size /= 2)
+    while (std::malloc(size) != nullptr) continue;
+}
+
+TEST(WorkerTeamDeathTest, IsDismissedWithoutMemory) {
+  ::testing::FLAGS_gtest_death_test_style = "threadsafe";
+  const auto dismiss_without_memory = [] {
+    std::optional<WorkerTeam> team(std::in_place, 3);
+    run(*team, 10, [](int) {});
+    take_all_memory();
+    team.reset();
+    std::_Exit(EXIT_SUCCESS);
+  };
+  EXPECT_EXIT(dismiss_without_memory(), ::testing::ExitedWithCode(EXIT_SUCCESS), "");
 }
 
 }  // namespace
