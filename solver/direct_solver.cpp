@@ -65,7 +65,7 @@ class DirectSolver : public StepSolver {
         kernel_name_(kernel.resolved),
         splits_(kernel.splits),
         settings_(settings),
-        clock_(options.threads),
+        clock_(options.threads, options.dispatch),
         kernel_(kernel.make(settings)),
         state_(read_direct_options(options, settings), clock_) {
     if (own != nullptr) links_.push_back({strategy, std::move(own)});

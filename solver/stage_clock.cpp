@@ -34,22 +34,33 @@ StageTimes StageClock::stop() {
   return times_;
 }
 
-// Total less what the tasks took, plus what they would take on so many workers.
 void StageClock::model() {
   times_.model_ms.fill(times_.total_ms);
+  times_.critical_path_ms = times_.total_ms;
   std::size_t begin = 0;
   for (const ParallelStage& stage : stages_) {
     const std::span<double> tasks(task_ms_.data() + begin, stage.end - begin);
     begin = stage.end;
-    if (stage.graph == nullptr) std::ranges::sort(tasks, std::greater<>());
-    const double on_one_ms = std::accumulate(tasks.begin(), tasks.end(), 0.0);
-    for (std::size_t k = 0; k < kModelWorkers.size(); ++k) {
-      const int workers = kModelWorkers[k];
-      times_.model_ms[k] += (stage.graph == nullptr ? makespan_ms(tasks, workers, worker_ms_)
-                                                    : schedule_.makespan_ms(*stage.graph, tasks, workers)) -
-                            on_one_ms;
-    }
+    if (tasks.size() > 1 || stage.graph != nullptr) model_stage(stage.graph, tasks);
   }
+}
+
+// Total less what the tasks took, plus what they would take on so many workers.
+void StageClock::model_stage(const TaskGraph* graph, std::span<double> task_ms) {
+  const double on_one_ms = std::accumulate(task_ms.begin(), task_ms.end(), 0.0);
+  const double task_us = graph == nullptr ? dispatch_.task_us : dispatch_.graph_task_us;
+  for (double& task : task_ms) task += 1e-3 * (task_us - dispatch_.timing_us);
+  if (graph == nullptr) std::ranges::sort(task_ms, std::greater<>());
+  const double gain_ms = on_one_ms - 1e-3 * dispatch_.stage_us;
+  for (std::size_t k = 0; k < kModelWorkers.size(); ++k) {
+    const int workers = kModelWorkers[k];
+    if (workers == 1) continue;
+    times_.model_ms[k] += (graph == nullptr ? makespan_ms(task_ms, workers, worker_ms_)
+                                            : schedule_.makespan_ms(*graph, task_ms, workers)) -
+                          gain_ms;
+  }
+  times_.critical_path_ms +=
+      (graph == nullptr ? task_ms.front() : schedule_.critical_path_ms(*graph, task_ms)) - gain_ms;
 }
 
 }  // namespace cleave

@@ -2,8 +2,10 @@
 //
 // A parallel stage is a set of tasks (one per subsystem, branch or tile), independent or of a graph. Their schedule
 // on p workers (task_schedule.h) gives the makespan of the stage; a solve on p workers is then modelled as the sum
-// of the makespans of its parallel stages plus all serial time. Task times add up to wall time on one thread only, so
-// a solve on more threads has no model. The model is made after the clock has stopped: during the solve task times are
+// of the makespans of its parallel stages plus all serial time. On more than one worker every task is charged what an empty
+// one costs, less what of that its one-thread time contains, and every stage what it costs to begin and end one; a single
+// task that belongs to no graph is done by the caller and pays neither. Communication is left out.
+// Task times add up to wall time on one thread only, so a solve on more threads has no model. The model is made after the clock has stopped: during the solve task times are
 // only put down.
 #pragma once
 
@@ -21,8 +23,9 @@ class StageClock {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // threads: of the solves that are timed.
-  explicit StageClock(int threads = 1) : models_(threads == 1) {}
+  // threads: of the solves that are timed. dispatch: what the model charges.
+  explicit StageClock(int threads = 1, const DispatchCost& dispatch = {})
+      : models_(threads == 1), dispatch_(dispatch) {}
 
   void start();                                // begins a solve: all zero
   void add(Stage stage, double milliseconds);  // serial or parallel wall time of a stage
@@ -33,16 +36,19 @@ class StageClock {
 
  private:
   friend class StageTimer;
-  void model();
-
-  bool models_;
-  bool timing_ = false;
-  StageTimes times_;
-  std::vector<double> task_ms_;  // of all parallel stages of the solve, one after the other
   struct ParallelStage {
     std::size_t end;         // where its tasks end in task_ms_
     const TaskGraph* graph;  // nullptr: independent
   };
+
+  void model();
+  void model_stage(const TaskGraph* graph, std::span<double> task_ms);
+
+  bool models_;
+  DispatchCost dispatch_;
+  bool timing_ = false;
+  StageTimes times_;
+  std::vector<double> task_ms_;  // of all parallel stages of the solve, one after the other
   std::vector<ParallelStage> stages_;
   std::vector<double> worker_ms_;
   GraphSchedule schedule_;

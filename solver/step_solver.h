@@ -34,6 +34,7 @@ struct SolveOptions {
   // Where there is one and it comes true, a solve ends with SolveStopped at its next factorisation,
   // back-substitution, sweep or block column of a dense interface. Must outlive the solver.
   const std::atomic<bool>* stop = nullptr;
+  DispatchCost dispatch = {};  // that the model of a one-thread solve charges
 };
 
 struct SolveSummary {

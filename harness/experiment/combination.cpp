@@ -8,6 +8,7 @@
 
 #include "harness/base/hash.h"
 #include "harness/experiment/cell_measures.h"
+#include "solver/dispatch_cost.h"
 #include "solver/problem_hash.h"
 
 namespace cleave {
@@ -96,7 +97,7 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
     : name_{.solver = solver.text},
       solver_named_(solver),
       repeats_(options.repeats),
-      solve_options_{.threads = options.threads, .stop = stop},
+      solve_options_{.threads = options.threads, .stop = stop, .dispatch = dispatch_cost()},
       context_(&context),
       solver_(make_solver(solver, solve_options_, context)) {
   if (solver_->uses_partition()) {

@@ -88,6 +88,7 @@ void StepRecord::set_summary(const SolveSummary& summary) {
   t_s_other_ms = summary.times.total_ms;
   for (const double stage_ms : t_s_stage_ms) t_s_other_ms -= stage_ms;
   t_s_model_ms = summary.times.model_ms;
+  t_s_critical_path_ms = summary.times.critical_path_ms;
   iterations = summary.iterations;
   factorizations = summary.factorizations;
   fallbacks = summary.fallbacks;

@@ -32,7 +32,7 @@ namespace cleave {
 
 // In the column schema_version of every row. Counts up when a column changes its meaning; new ones come at
 // the end.
-inline constexpr const char* kStepsSchema = "cleave-steps-3";
+inline constexpr const char* kStepsSchema = "cleave-steps-4";
 
 // A column of a parameter of algorithms (algorithms.h).
 struct ParameterColumn {
@@ -81,6 +81,7 @@ struct StepRecord {
   std::array<double, kStageNames.size()> t_s_stage_ms = filled<kStageNames.size()>();
   double t_s_other_ms = kUnmeasured;
   std::array<double, kModelWorkers.size()> t_s_model_ms = filled<kModelWorkers.size()>();
+  double t_s_critical_path_ms = kUnmeasured;
   int iterations = -1, factorizations = -1, fallbacks = -1, refinements = -1;
   std::string auto_reason = "-";
   // The verdict.
@@ -212,9 +213,12 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
     visit_machine("t_s_" + std::string(kStageNames[stage]) + "_ms", r.t_s_stage_ms[stage],
                   "stage of the solve that took t_s_ms");
   visit_machine("t_s_other_ms", r.t_s_other_ms, "t_s_ms less its named stages");
-  for (std::size_t i = 0; i < kModelWorkers.size(); ++i)
+  const auto visit_model = [&](std::size_t i) {
     visit_machine("t_s_model_p" + std::to_string(kModelWorkers[i]) + "_ms", r.t_s_model_ms[i],
                   "solve modelled on so many workers from the task times of one-thread runs");
+  };
+  constexpr std::size_t kFirstModels = 5;  // those of the first tables; the others stand at the end
+  for (std::size_t i = 0; i < kFirstModels; ++i) visit_model(i);
   visit("iterations", r.iterations, "iterations of the strategy");
   visit("factorizations", r.factorizations, "numeric factorisations");
   visit("fallbacks", r.fallbacks, "hand-overs from one strategy to the next");
@@ -270,6 +274,9 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit("steps", r.steps, "steps that were to be simulated", About::bookkeeping);
   visit("scene_options", r.scene_options, "the scene's own options, name=value;name=value", About::problem);
   visit("schema_version", r.schema_version, "what the columns of this row mean", About::bookkeeping);
+  for (std::size_t i = kFirstModels; i < kModelWorkers.size(); ++i) visit_model(i);
+  visit_machine("t_s_critical_path_ms", r.t_s_critical_path_ms,
+                "solve modelled on as many workers as there are tasks");
 }
 
 // "run_id,scene,...\n"

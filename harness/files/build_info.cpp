@@ -15,6 +15,7 @@
 
 #include "harness/files/dense_speed.h"
 #include "harness/files/hdf5_types.h"
+#include "solver/dispatch_cost.h"
 
 // Written by build_info.cmake; a build without it says "unknown".
 #if __has_include("cleave_build_info.h")
@@ -113,6 +114,7 @@ MachineInfo machine_info() {
   info.omp_environment = omp_environment();
   info.dense_kernel = dense_kernel();
   info.dense_gflop_per_s = dense_gflop_per_s();
+  info.dispatch = dispatch_cost();
   return info;
 }
 

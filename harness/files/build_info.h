@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "solver/stage_times.h"
+
 namespace cleave {
 
 // Of the sources at build time: "unknown" where they are no git checkout.
@@ -39,8 +41,10 @@ struct MachineInfo {
   std::vector<std::pair<std::string, std::string>> omp_environment;  // OMP_* as set, by name
   std::string dense_kernel;
   double dense_gflop_per_s = 0;
+  DispatchCost dispatch;
 };
-MachineInfo machine_info();  // measures the dense kernel, about 10 ms
+MachineInfo
+machine_info();  // measures the dense kernel and, once a process, the dispatch of tasks: about 30 ms
 
 std::string host_name();  // "unknown" where the system does not say
 

@@ -75,6 +75,16 @@ void add_load(JsonWriter& json, const char* name, const std::array<double, 3>& l
   json.end_array();
 }
 
+// Charged by the columns t_s_model_p*_ms.
+void add_dispatch(JsonWriter& json, const DispatchCost& dispatch) {
+  json.begin_object("dispatch");
+  json.field("timing_us", dispatch.timing_us);
+  json.field("task_us", dispatch.task_us);
+  json.field("graph_task_us", dispatch.graph_task_us);
+  json.field("stage_us", dispatch.stage_us);
+  json.end_object();
+}
+
 void add_machine(JsonWriter& json, const MachineInfo& machine, const std::array<double, 3>* load_at_end) {
   json.begin_object("machine");
   json.field("host", machine.host);
@@ -89,6 +99,7 @@ void add_machine(JsonWriter& json, const MachineInfo& machine, const std::array<
   json.end_object();
   json.field("dense_kernel", machine.dense_kernel);
   json.field("dense_gflop_per_s", machine.dense_gflop_per_s);
+  add_dispatch(json, machine.dispatch);
   json.end_object();
 }
 

@@ -15,7 +15,7 @@ class IterativeBaseline : public StepSolver {
  public:
   // name: of the registry row; must outlive the object.
   IterativeBaseline(std::string_view name, const SolveOptions& options)
-      : name_(name), stop_(options.stop), clock_(options.threads) {}
+      : name_(name), stop_(options.stop), clock_(options.threads, options.dispatch) {}
   bool uses_partition() const override { return false; }
 
  protected:

@@ -45,6 +45,11 @@ TEST(Csv, HeaderStartsWithTheContract) {
   EXPECT_EQ(count_lines(header), 1);
 }
 
+// New columns come after those of earlier tables.
+TEST(Csv, MoreWorkersStandAtTheEnd) {
+  EXPECT_TRUE(csv_header().ends_with(",schema_version,t_s_model_p32_ms,t_s_model_p64_ms,t_s_critical_path_ms\n"));
+}
+
 TEST(Csv, HeaderRowAndColumnListAgree) {
   const CsvTable table = parse_csv(csv_header() + csv_line(StepRecord{}));
   const std::vector<Column> list = columns();

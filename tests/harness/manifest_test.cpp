@@ -95,6 +95,8 @@ TEST_F(ManifestOfARun, SaysWhatTheTimesDependOn) {
   EXPECT_EQ(ask_manifest("m['machine']['omp_environment'].get('OMP_WAIT_POLICY')"), "passive");
   EXPECT_EQ(ask_manifest("len(m['machine']['dense_kernel']) > 2 and m['machine']['dense_gflop_per_s'] > 0"),
             "True");
+  EXPECT_EQ(ask_manifest("sorted(m['machine']['dispatch']), m['machine']['dispatch']['timing_us'] > 0"),
+            "(['graph_task_us', 'stage_us', 'task_us', 'timing_us'], True)");
   EXPECT_EQ(ask_manifest("m['result']['t_s_total_ms'] > 0 and m['result']['t_s_waiting_total_ms'] >= 0"),
             "True");
 }

@@ -1,4 +1,4 @@
-"""scripts/two_threads, cold_starts, ablation and the benchmarks with stand-ins for the programs they run."""
+"""scripts/two_threads, modelled_workers, cold_starts, ablation and the benchmarks with stand-ins for the programs they run."""
 import csv
 import json
 import os
@@ -17,7 +17,7 @@ from cleave_scripts.results.paper import COMBINATIONS
 STAND_IN = f"""#!/usr/bin/python3
 import itertools, os, pathlib, sys
 sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
-from synthetic import asked_partitioners, asked_refiners, write_steps
+from synthetic import asked_partitioners, asked_refiners, write_manifest, write_steps
 words = sys.argv[1:]
 with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write(" ".join(words) + "\\n")
@@ -36,12 +36,21 @@ files = [word for word in words if word.endswith(".h5")]
 assert files and all(os.path.exists(file) for file in files), files
 threads = int(words[words.index("--threads") + 1]) if "--threads" in words else 1
 given = dict(zip(words, words[1:]))
+def alone_ms(step):
+    return float(os.environ.get("STAND_IN_MS", 8)) if step == 100 else 8
+def modelled(step, threads):
+    # As measured, but for step 100 as the test says.
+    two = alone_ms(step) / 2 * (float(os.environ.get("STAND_IN_MODEL", 1)) if step == 100 else 1)
+    more = {{name: alone_ms(step) / 8 for name in ("t_s_critical_path_ms", *(f"t_s_model_p{{p}}_ms" for p in (4, 8, 16, 32, 64)))}}
+    return {{"t_s_model_p2_ms": two, **more}} if threads == 1 else dict.fromkeys(("t_s_model_p2_ms", *more), float("nan"))
 names = itertools.product(asked_partitioners(given.get("--partitioner", "-")), asked_refiners(given.get("--refiner", "-")))
 write_steps(out, [dict(step=int(file[-9:-3]), scene="s", bodies=7, partitioner=partitioner, refiner=refiner,
                        threads=threads, rows=1200, interface_rows=50 if "whole" in words else 40,
-                       status=os.environ.get("STAND_IN_STATUS", "ok"), t_s_ms=8 / threads, t_s_waiting_ms=0.25,
-                       factorizations=9 if "--cold" in words else 2)
-                  for partitioner, refiner in names for file in files])
+                       status=os.environ.get("STAND_IN_STATUS", "ok"), t_s_ms=alone_ms(int(file[-9:-3])) / threads, t_s_waiting_ms=float(os.environ.get("STAND_IN_WAITING", 0.25)),
+                       factorizations=9 if "--cold" in words else 2, seed=1, cfm=1e-5, solver=solver,
+                       **modelled(int(file[-9:-3]), threads))
+                  for partitioner, refiner in names for solver in given.get("--solver", "schur").split(",") for file in files])
+write_manifest(out, machine={{"dispatch": {{"timing_us": 0.03, "task_us": 0.2, "graph_task_us": 0.4, "stage_us": 1.5}}}})
 """
 
 
@@ -87,6 +96,54 @@ class TwoThreadsTest(Measurement):
         self.check_status_refused()
         self.assertIn("exit code 1: cleave replay: no", self.run_it(code=1, stand_in_code=1).stderr.splitlines()[-1])
         self.assertFalse((self.directory / "out" / "two_threads.csv").exists())
+
+
+class ModelledWorkersTest(Measurement):
+    script = "modelled_workers"
+    cells = 5 * 2 * 4  # problems, steps, solvers
+
+    def model(self, share, code=0, ms=20, waiting_ms=0.1):
+        """Step 100 takes ms on one thread and half of it on two, which the model gives times share; step 200 takes 8 ms."""
+        with unittest.mock.patch.dict(os.environ, STAND_IN_MODEL=str(share), STAND_IN_MS=str(ms), STAND_IN_WAITING=str(waiting_ms)):
+            return self.run_it("--rounds", 3, code=code)
+
+    def test_one_and_two_threads_take_turns_on_the_same_files(self):
+        self.model(1)
+        calls = self.calls()
+        records, replays = ([call for call in calls if call.startswith(word)] for word in ("record", "replay"))
+        self.assertEqual(len(records), 5)
+        self.assertEqual([call[call.index("--threads"):].split()[1] for call in replays], ["1", "2", "2", "1", "1", "2"])
+        rows = self.rows("modelled_workers.csv")
+        self.assertEqual(len(rows), 3 * 2 * self.cells)
+        self.assertEqual({(row["task_us"], row["stage_us"]) for row in rows}, {("0.2", "1.5")})
+
+    def test_the_error_of_slow_steps_decides_and_all_others_are_shown(self):
+        said = self.model(0.9).stdout
+        self.assertIn("Steps of 5 ms and more on two threads: 4, median error 10.0 %, from -10 to -10 %.", said)
+        self.assertIn("| s | 7 | 1e-05 | 100 | exact | 20.0 | 9.00 | 10.0 | -10 % | 2.50 | 2.50 | 2.50 |", said)
+        self.assertIn("Steps below 5 ms: 4, median error 0.0 %", said)
+        self.assertIn("| s | 7 | 1e-05 | 200 | exact | 8.00 | 4.00 | 4.00 | +0 % |", said)
+        self.assertIn("Charged: 200 ns an independent task and 400 ns a task of a graph, less the 30 ns", said)
+        self.assertIn("pass  median error over steps of 5 ms and more on two threads: 10.0 %, limit 15 %", said)
+        self.assertIn("FAIL  median error over steps of 5 ms and more on two threads: 20.0 %", self.model(1.2, code=3).stdout)
+        self.assertIn("FAIL  median error", self.model(0.8, code=3).stdout)
+
+    def test_the_document_says_the_same(self):
+        self.model(0.9)
+        made = speed.modelled_workers(self.stored())
+        self.assertIn("medians of 3, seed 1, `mix+fm`", made)
+        self.assertIn("| s | 7 | 1e-05 | 100 | exact | 20.0 | 9.00 | 10.0 | -10 % |", made)
+
+    def test_without_slow_steps_or_a_core_nothing_is_decided(self):
+        self.assertIn("no step took 5 ms", self.model(1, code=1, ms=9).stderr.splitlines()[-1])
+        said = self.model(0.5, code=1, waiting_ms=0.6).stderr  # step 200 waited on both, step 100 on two threads
+        self.assertIn("no step took 5 ms", said.splitlines()[-1])
+
+    def test_bad_input_and_failures_are_one_line(self):
+        self.check_least("--rounds", 3)
+        self.check_status_refused()
+        self.assertIn("exit code 1: cleave replay: no", self.run_it(code=1, stand_in_code=1).stderr.splitlines()[-1])
+        self.assertFalse((self.directory / "out" / "modelled_workers.csv").exists())
 
 
 class BusyMachineTest(Measurement):

@@ -51,7 +51,7 @@ class CheckoutTest(unittest.TestCase):
     def columns(self):
         """{small CSV file: its columns} as the commands write them."""
         written = {"extremes.csv": set(extremes_steps.WRITTEN)}
-        for command in ("two_threads", "busy_machine", "cold_starts", "ablation"):
+        for command in ("two_threads", "modelled_workers", "busy_machine", "cold_starts", "ablation"):
             listed = re.search(r"^COLUMNS = \((.*?)\)", (SCRIPTS / command).read_text(), re.M | re.S)[1]
             written[f"{command}.csv"] = set(re.findall(r'"(\w+)"', listed))
         with open(ROOT / "results" / "report" / "verdicts.csv", encoding="utf-8") as file:

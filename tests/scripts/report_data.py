@@ -33,7 +33,7 @@ def report_row(scene, step, partitioner, refiner, **changes):
         "t_s_other_ms": 0.1 * t_s
     }
     row |= {f"t_s_{stage}_ms": 0.3 * t_s for stage in STAGES}
-    row |= {f"t_s_model_p{workers}_ms": t_s * (0.5 + 0.5 / workers) for workers in (1, 2, 4, 8, 16)}
+    row |= {f"t_s_model_p{workers}_ms": t_s * (0.5 + 0.5 / workers) for workers in (1, 2, 4, 8, 16, 32, 64)}
     return row | changes
 
 

@@ -1,5 +1,6 @@
 """What the figures of scripts/report look like, as far as it can be told without pixels."""
 import itertools
+import json
 import pathlib
 import tempfile
 import unittest
@@ -175,14 +176,26 @@ class SpeedUpTest(FigureCase):
         self.assertIn("the modelled time of a combination with as many workers is", self.caption)
         for ax in figure.axes:
             ideal, = (line for line in ax.lines if line.get_gid() == "ideal")
-            workers = numpy.array([1, 2, 4, 8, 16])
+            workers = numpy.array([1, 2, 4, 8, 16, 32, 64])
             places = ax.transData.transform(numpy.column_stack([workers, workers]))
             directions = numpy.diff(places, axis=0)
             self.assertLess(numpy.ptp(numpy.arctan2(*directions.T)), 1e-9)
-            numpy.testing.assert_allclose(ideal.get_xydata()[[0, -1]], [[1, 1], [16, 16]])
+            numpy.testing.assert_allclose(ideal.get_xydata()[[0, -1]], [[1, 1], [64, 64]])
             for line in ax.lines:
                 if line is not ideal:
                     self.assert_inside(ax, line)
+
+    def test_the_caption_says_what_the_runs_charged(self):
+        write_tree(self.directory)
+        charge = "each charged what it costs to hand out an empty one"
+        self.draw("speed_up")
+        self.assertNotIn(charge, self.caption)
+        for path in self.directory.rglob("manifest.json"):
+            manifest = json.loads(path.read_text())
+            manifest["machine"]["dispatch"] = {"task_us": 0.2}
+            path.write_text(json.dumps(manifest))
+        self.draw("speed_up")
+        self.assertIn(charge, self.caption)
 
     def assert_inside(self, ax, line):
         frame, radius = ax.get_window_extent(), line.get_markersize() * ax.figure.dpi / 72 / 2

@@ -292,6 +292,9 @@ TEST_P(SolverContractTest, StageTimesAddUp) {
     EXPECT_LE(times.model_ms[p], times.model_ms[p - 1] * (1 + 1e-9));
     EXPECT_GE(times.model_ms[p], times.total_ms / kModelWorkers[p] * (1 - 1e-9));
   }
+  EXPECT_EQ(times.model_ms[0], times.total_ms);
+  EXPECT_LE(times.critical_path_ms, times.model_ms.back() * (1 + 1e-9));
+  EXPECT_GE(times.critical_path_ms, 0);
 }
 
 // Of every strategy that runs; a solver that leaves the test here takes no iterations of a strategy.

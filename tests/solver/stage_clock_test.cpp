@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "tests/solver/seeded_random.h"
@@ -76,6 +77,43 @@ TEST(StageClockTest, ModelsParallelStagesAndKeepsSerialTime) {
   EXPECT_NEAR(times.total_ms - times.model_ms[2], 12 - 5, 1e-9);
   EXPECT_NEAR(times.total_ms - times.model_ms[3], 12 - 5, 1e-9);
   EXPECT_NEAR(times.total_ms - times.model_ms[4], 12 - 5, 1e-9);
+  EXPECT_NEAR(times.total_ms - times.critical_path_ms, 12 - 5, 1e-9);
+}
+
+// On two workers 3 ms become 1.5, and every task costs 0.3 - 0.1 ms more, every stage 0.25; a single task is the caller's.
+TEST(StageClockTest, ChargesDispatchOnMoreThanOneWorker) {
+  StageClock clock(1, {.timing_us = 100, .task_us = 300, .graph_task_us = 1100, .stage_us = 250});
+  TaskGraph chain;
+  chain.build(3, std::vector<std::pair<int, int>>{{0, 1}, {1, 2}});
+  clock.start();
+  spin_ms(20);
+  clock.add_tasks(std::vector<double>{1, 1, 1});
+  clock.add_tasks(std::vector<double>{5});
+  clock.add_graph(chain, std::vector<double>{1, 2, 3});
+  clock.add_tasks({});
+  const StageTimes times = clock.stop();
+  const auto gain_ms = [&](double model_ms) { return times.total_ms - model_ms; };
+  const double chain_ms = -(0.25 + 3 * 1.0);
+  EXPECT_EQ(times.model_ms[0], times.total_ms);
+  EXPECT_NEAR(gain_ms(times.model_ms[1]), 3 - (0.25 + 2 * 1.2) + chain_ms, 1e-9);
+  EXPECT_NEAR(gain_ms(times.model_ms[2]), 3 - (0.25 + 1.2) + chain_ms, 1e-9);
+  EXPECT_NEAR(gain_ms(times.model_ms.back()), 3 - (0.25 + 1.2) + chain_ms, 1e-9);
+  EXPECT_NEAR(gain_ms(times.critical_path_ms), 3 - (0.25 + 1.2) + chain_ms, 1e-9);
+}
+
+// Where the cost is not known, one worker is still what was measured.
+TEST(StageClockTest, ModelsNoMoreWorkersWithoutTheCostOfDispatch) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  StageClock clock(1, {kNan, kNan, kNan, kNan});
+  TaskGraph pair;
+  pair.build(2, {});
+  clock.start();
+  clock.add_tasks(std::vector<double>{1, 2, 3});
+  clock.add_graph(pair, std::vector<double>{1, 2});
+  const StageTimes times = clock.stop();
+  EXPECT_EQ(times.model_ms[0], times.total_ms);
+  for (std::size_t k = 1; k < kModelWorkers.size(); ++k) EXPECT_TRUE(std::isnan(times.model_ms[k]));
+  EXPECT_TRUE(std::isnan(times.critical_path_ms));
 }
 
 // Stages wait for each other: one list of all tasks would give 8 on two workers.
@@ -97,6 +135,7 @@ TEST(StageClockTest, ModelsNothingOfMoreThreads) {
   const StageTimes times = clock.stop();
   EXPECT_GT(times.total_ms, 0);
   for (const double model_ms : times.model_ms) EXPECT_TRUE(std::isnan(model_ms));
+  EXPECT_TRUE(std::isnan(times.critical_path_ms));
 }
 
 TEST(StageClockTest, NothingIsMeasuredBeforeItStarts) {

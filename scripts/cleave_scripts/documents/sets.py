@@ -17,6 +17,7 @@ SETS = {
     "busy_machine.csv": "a step on two threads while other programs keep the cores busy",
     "partition_benchmark.json": "every partitioner and refiner and METIS on synthetic piles",
     "two_threads.csv": "recorded steps with one and with two threads, in turn",
+    "modelled_workers.csv": "recorded steps with one and with two threads, in turn, and what the model of the first says",
     "ablation.csv": "interface rows under the open choices of the method",
     "figures": "the pictures of the README",
 }
@@ -33,6 +34,7 @@ COMMANDS = {
     "busy_machine.csv": "scripts/busy_machine",
     "partition_benchmark.json": "scripts/benchmark_partitioners",
     "two_threads.csv": "scripts/two_threads",
+    "modelled_workers.csv": "scripts/modelled_workers",
     "ablation.csv": "scripts/ablation",
     "figures": "scripts/readme_figures",
 }

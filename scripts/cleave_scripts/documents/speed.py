@@ -3,11 +3,12 @@ import math
 import statistics
 
 from cleave_scripts.documents.stored import need
-from cleave_scripts.measurements import dense_ratios, model_ratios, solver_ratios, thread_times
+from cleave_scripts.measurements import dense_ratios, model_ratios, modelled_times, solver_ratios, thread_times
 from cleave_scripts.results.paper import BEST, SCENES
 from cleave_scripts.table import text
 
 THREADS = ("two_threads.csv", "scripts/two_threads")
+MODELLED = ("modelled_workers.csv", "scripts/modelled_workers")
 COLD = ("cold_starts.csv", "scripts/cold_starts")
 BENCHMARK = ("solver_benchmark.json", "scripts/benchmark_solvers")
 DENSE = ("dense_benchmark.json", "scripts/benchmark_dense")
@@ -42,6 +43,15 @@ def model(stored):
             f"({stored.origin(ONE_THREAD[0])}); {found.waited} pairs that waited for a core are "
             "left out:\n\n" +
             text.table(["scene", "pairs", "lower quartile", "median", "upper quartile"], lines))
+
+
+def modelled_workers(stored):
+    """The same of recorded steps, step by step."""
+    rows = need(stored.table(*MODELLED), "modelled workers")
+    rounds = len({row["round"] for row in rows})
+    return (f"`{MODELLED[1]}`: replays of recorded steps with one and with two threads, in turn, medians of {rounds}, seed "
+            f"{text.listed(sorted({row['seed'] for row in rows}))}, `{'+'.join(BEST)}` ({stored.origin(MODELLED[0])}). "
+            f"{modelled_times.lines_of_costs(rows)}\n\n{modelled_times.lines_of_steps(*modelled_times.compare(rows))}")
 
 
 def solver_benchmark(stored):
@@ -101,4 +111,4 @@ def speed_accuracy(stored):
 
 BLOCKS = {"two_threads": two_threads, "solver_benchmark": solver_benchmark, "cold_starts": cold_starts,
           "speed_accuracy": speed_accuracy, "dense": dense, "busy_machine": busy_machine,
-          "model": model}
+          "model": model, "modelled_workers": modelled_workers}

@@ -38,6 +38,8 @@ STAGES = (
     Stage("partition_benchmark", ("benchmark_partitioners", "--out", "{out}"), 3,
           files=(("partition_benchmark.json", "partition_benchmark.json"),)),
     Stage("two_threads", ("two_threads", "--out", "{out}"), 2, files=(("two_threads.csv", "two_threads.csv"),)),
+    Stage("modelled_workers", ("modelled_workers", "--out", "{out}"), 5,
+          files=(("modelled_workers.csv", "modelled_workers.csv"),)),
     Stage("cold_starts", ("cold_starts", "--out", "{out}"), 1, files=(("cold_starts.csv", "cold_starts.csv"),)),
     Stage("ablation", ("ablation", "--out", "{out}"), 3, files=(("ablation.csv", "ablation.csv"),)),
     Stage("extremes", ("extremes", "--seeds", "1", "--out", "{out}"), 12, files=(("extremes.csv", "extremes.csv"),)),

@@ -1,0 +1,90 @@
+"""Medians of what scripts/modelled_workers measured: the model of one-thread solves against solves on two threads."""
+import dataclasses
+import statistics
+
+from cleave_scripts.table import text
+from cleave_scripts.table.cells import MOST_WAITING
+
+LEAST_MS = 5  # measured on two threads; a median error is that of steps of at least this
+MOST_ERROR = 0.15
+SLOW = f"steps of {LEAST_MS} ms and more on two threads"
+KEY = ("scene", "bodies", "cfm", "step", "solver")
+COSTS = ("task_us", "graph_task_us", "timing_us", "stage_us")
+MODEL = "t_s_model_p2_ms"
+SHOWN = {"16": "t_s_model_p16_ms", "64": "t_s_model_p64_ms", "as many as tasks": "t_s_critical_path_ms"}
+HEADER = ("scene", "bodies", "cfm", "step", "solver", "one thread, ms", "modelled on 2", "measured on 2", "error",
+          *(f"modelled on {workers}" for workers in SHOWN))
+
+
+@dataclasses.dataclass
+class Step:
+    key: tuple  # values of KEY
+    one_ms: float
+    modelled_ms: float  # on two workers
+    measured_ms: float  # on two threads
+    more_ms: list  # modelled, as SHOWN
+
+    @property
+    def error(self):
+        return self.modelled_ms / self.measured_ms - 1
+
+    @property
+    def slow(self):
+        return self.measured_ms >= LEAST_MS
+
+
+def _waited(row):
+    return float(row["t_s_waiting_ms"]) > MOST_WAITING * float(row["t_s_ms"])
+
+
+def compare(rows):
+    """([Step], number of solves that waited for a core and are left out); medians over the rounds."""
+    cells, waited = {}, 0
+    for row in rows:
+        if _waited(row):
+            waited += 1
+        else:
+            cells.setdefault(tuple(str(row[column]) for column in KEY), {}).setdefault(int(row["threads"]), []).append(row)
+
+    def median(rows_of_cell, column):
+        return statistics.median(float(row[column]) for row in rows_of_cell)
+
+    steps = [Step(key, median(cell[1], "t_s_ms"), median(cell[1], MODEL), median(cell[2], "t_s_ms"),
+                  [median(cell[1], column) for column in SHOWN.values()])
+             for key, cell in cells.items() if 1 in cell and 2 in cell]
+    return steps, waited
+
+
+def median_error(steps):
+    """Of the steps that are slow enough; there has to be one."""
+    return statistics.median(abs(step.error) for step in steps if step.slow)
+
+
+def _line(step):
+    return [*step.key, *map(text.number, (step.one_ms, step.modelled_ms, step.measured_ms)), f"{100 * step.error:+.0f} %",
+            *map(text.number, step.more_ms)]
+
+
+def lines_of_steps(steps, waited):
+    """A table of the slow steps, one of the others, and what was left out."""
+    parts = []
+    for slow in (True, False):
+        chosen = [step for step in steps if step.slow == slow]
+        if not chosen:
+            continue
+        least, middle, most = (100 * value for value in (min(step.error for step in chosen),
+                                                         statistics.median(abs(step.error) for step in chosen),
+                                                         max(step.error for step in chosen)))
+        title = SLOW if slow else f"steps below {LEAST_MS} ms"
+        parts.append(f"{title[0].upper()}{title[1:]}: {len(chosen)}, median error {middle:.1f} %, from {least:+.0f} to "
+                     f"{most:+.0f} %.\n\n{text.table(HEADER, map(_line, chosen))}")
+    parts.append(f"Solves that waited more than {100 * MOST_WAITING:.0f} % of t_s for a core are left out: {waited}.")
+    return "\n\n".join(parts)
+
+
+def lines_of_costs(rows):
+    """What was charged, medians over the one-thread solves."""
+    task, graph_task, timing, stage = (statistics.median(float(row[name]) for row in rows if int(row["threads"]) == 1)
+                                       for name in COSTS)
+    return (f"Charged: {1000 * task:.0f} ns an independent task and {1000 * graph_task:.0f} ns a task of a graph, less the "
+            f"{1000 * timing:.0f} ns of its timing on one thread, and {text.number(stage)} µs a parallel stage.")
