@@ -49,7 +49,7 @@ def modelled_workers(stored):
     """The same of recorded steps, step by step."""
     rows = need(stored.table(*MODELLED), "modelled workers")
     rounds = len({row["round"] for row in rows})
-    return (f"`{MODELLED[1]}`: replays of recorded steps with one and with two threads, in turn, medians of {rounds}, seed "
+    return (f"`{MODELLED[1]}`: replays of recorded steps with one and with two threads, in turn, the fastest of {rounds} rounds, seed "
             f"{text.listed(sorted({row['seed'] for row in rows}))}, `{'+'.join(BEST)}` ({stored.origin(MODELLED[0])}). "
             f"{modelled_times.lines_of_costs(rows)}\n\n{modelled_times.lines_of_steps(*modelled_times.compare(rows))}")
 

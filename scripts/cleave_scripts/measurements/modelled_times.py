@@ -1,4 +1,9 @@
-"""Medians of what scripts/modelled_workers measured: the model of one-thread solves against solves on two threads."""
+"""What scripts/modelled_workers measured: the model of one-thread solves against solves on two threads.
+
+Of every step the fastest round counts, on one thread and on two: on machines that share their cores with others every solve
+of a replay can take a third longer, for a second or so, without any waiting that the system would see, and it hits one
+round here and another there. How far medians over the rounds are apart is told beside it.
+"""
 import dataclasses
 import statistics
 
@@ -23,6 +28,7 @@ class Step:
     modelled_ms: float  # on two workers
     measured_ms: float  # on two threads
     more_ms: list  # modelled, as SHOWN
+    median_error: float  # modelled over measured, both medians over the rounds, less 1
 
     @property
     def error(self):
@@ -37,22 +43,27 @@ def _waited(row):
     return float(row["t_s_waiting_ms"]) > MOST_WAITING * float(row["t_s_ms"])
 
 
+def _step(key, one, two):
+    def fastest(rows):
+        return min(rows, key=lambda row: float(row["t_s_ms"]))
+
+    def median(rows, column):
+        return statistics.median(float(row[column]) for row in rows)
+
+    best = fastest(one)
+    return Step(key, float(best["t_s_ms"]), float(best[MODEL]), float(fastest(two)["t_s_ms"]),
+                [float(best[column]) for column in SHOWN.values()], median(one, MODEL) / median(two, "t_s_ms") - 1)
+
+
 def compare(rows):
-    """([Step], number of solves that waited for a core and are left out); medians over the rounds."""
+    """([Step], number of solves that waited for a core and are left out)"""
     cells, waited = {}, 0
     for row in rows:
         if _waited(row):
             waited += 1
         else:
             cells.setdefault(tuple(str(row[column]) for column in KEY), {}).setdefault(int(row["threads"]), []).append(row)
-
-    def median(rows_of_cell, column):
-        return statistics.median(float(row[column]) for row in rows_of_cell)
-
-    steps = [Step(key, median(cell[1], "t_s_ms"), median(cell[1], MODEL), median(cell[2], "t_s_ms"),
-                  [median(cell[1], column) for column in SHOWN.values()])
-             for key, cell in cells.items() if 1 in cell and 2 in cell]
-    return steps, waited
+    return [_step(key, cell[1], cell[2]) for key, cell in cells.items() if 1 in cell and 2 in cell], waited
 
 
 def median_error(steps):
@@ -61,7 +72,8 @@ def median_error(steps):
 
 
 def _line(step):
-    return [*step.key, *map(text.number, (step.one_ms, step.modelled_ms, step.measured_ms)), f"{100 * step.error:+.0f} %",
+    scene, bodies, cfm, *rest = step.key
+    return [scene, bodies, f"{float(cfm):g}", *rest, *map(text.number, (step.one_ms, step.modelled_ms, step.measured_ms)), f"{100 * step.error:+.0f} %",
             *map(text.number, step.more_ms)]
 
 
@@ -76,8 +88,9 @@ def lines_of_steps(steps, waited):
                                                          statistics.median(abs(step.error) for step in chosen),
                                                          max(step.error for step in chosen)))
         title = SLOW if slow else f"steps below {LEAST_MS} ms"
+        of_medians = 100 * statistics.median(abs(step.median_error) for step in chosen)
         parts.append(f"{title[0].upper()}{title[1:]}: {len(chosen)}, median error {middle:.1f} %, from {least:+.0f} to "
-                     f"{most:+.0f} %.\n\n{text.table(HEADER, map(_line, chosen))}")
+                     f"{most:+.0f} %; with medians over the rounds in place of the fastest, median error {of_medians:.1f} %.\n\n{text.table(HEADER, map(_line, chosen))}")
     parts.append(f"Solves that waited more than {100 * MOST_WAITING:.0f} % of t_s for a core are left out: {waited}.")
     return "\n\n".join(parts)
 
