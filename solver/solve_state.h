@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "solver/direct_options.h"
@@ -87,9 +88,11 @@ struct SolveState {
   std::vector<RowState> state;                   // (m)
   std::vector<double> weight;                    // (m) D of the present factor
   std::vector<double> f_v, f_r, dv, dlambda;     // right-hand sides and increments
-  std::vector<int> violated;                     // rows found by find_violations
-  std::vector<double> row_impulse;               // (m) scratch: impulses in rows where a box is turned
-  std::span<const int> part_of_body;             // (n) of the solve, for strategies that look at the cut
+  // In a session: rows that the last solve left in another state than the warm start had told; all where it does not know.
+  int changed_rows = std::numeric_limits<int>::max();
+  std::vector<int> violated;          // rows found by find_violations
+  std::vector<double> row_impulse;    // (m) scratch: impulses in rows where a box is turned
+  std::span<const int> part_of_body;  // (n) of the solve, for strategies that look at the cut
 };
 
 }  // namespace cleave

@@ -23,9 +23,10 @@ class StageClock {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // threads: of the solves that are timed. dispatch: what the model charges.
-  explicit StageClock(int threads = 1, const DispatchCost& dispatch = {})
-      : models_(threads == 1), dispatch_(dispatch) {}
+  // threads: of the solves that are timed. dispatch: what the model charges. graphs_stay: none is built anew during a
+  // solve; else there is no model.
+  explicit StageClock(int threads = 1, const DispatchCost& dispatch = {}, bool graphs_stay = true)
+      : models_(threads == 1 && graphs_stay), dispatch_(dispatch) {}
 
   void start();                                // begins a solve: all zero
   void add(Stage stage, double milliseconds);  // serial or parallel wall time of a stage
