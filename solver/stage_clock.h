@@ -2,11 +2,11 @@
 //
 // A parallel stage is a set of tasks (one per subsystem, branch or tile), independent or of a graph. Their schedule
 // on p workers (task_schedule.h) gives the makespan of the stage; a solve on p workers is then modelled as the sum
-// of the makespans of its parallel stages plus all serial time. On more than one worker every task is charged what an empty
-// one costs, less what of that its one-thread time contains, and every stage what it costs to begin and end one; a single
-// task that belongs to no graph is done by the caller and pays neither. Communication is left out.
-// Task times add up to wall time on one thread only, so a solve on more threads has no model. The model is made after the clock has stopped: during the solve task times are
-// only put down.
+// of the makespans of its parallel stages plus all serial time. On more than one worker every task is charged what an
+// empty one costs, less what of that its one-thread time contains, and every stage what it costs to begin and end one; a
+// single task that belongs to no graph is done by the caller and pays neither. Communication is left out. Task times add
+// up to wall time on one thread only, so a solve on more threads has no model. The model is made after the clock has
+// stopped: during the solve task times are only put down.
 #pragma once
 
 #include <chrono>
