@@ -224,7 +224,14 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, const Parts& par
     StageTimer timer(clock_, Stage::analyze);
     step_.prepare(problem, &state_.tasks);
   }
-  analyze(problem, parts);
+  try {
+    analyze(problem, parts);
+  } catch (const MemoryRefused& refused) {
+    summary.status = SolveStatus::out_of_memory;
+    summary.message = refused.what();
+  }
+  summary.factor_predicted_mb = 1e-6 * static_cast<double>(state_.tasks.memory().needed_bytes());
+  if (summary.status == SolveStatus::out_of_memory) return summary;
   state_.part_of_body = parts.part_of_body;
   step_.set().to_axes(solution.impulse);
   const bool solved = run_attempts(summary, problem, solution.impulse);

@@ -96,7 +96,8 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
     : name_{.solver = solver.text},
       solver_named_(solver),
       repeats_(options.repeats),
-      solve_options_{.threads = options.threads, .stop = stop},
+      solve_options_{
+          .threads = options.threads, .stop = stop, .memory_limit_bytes = options.memory_limit_bytes},
       context_(&context),
       solver_(make_solver(solver, solve_options_, context)) {
   if (solver_->uses_partition()) {

@@ -36,6 +36,8 @@ struct RunOptions {
   int skip = 0;         // read by reports, not by the run
   int repeats = 3;
   int threads = 1;
+  double memory_limit_gb = std::numeric_limits<double>::quiet_NaN();             // NaN: what the machine has
+  std::uint64_t memory_limit_bytes = std::numeric_limits<std::uint64_t>::max();  // what that is
   std::uint64_t seed = 1;
   std::string out;
   bool force = false;

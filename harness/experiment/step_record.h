@@ -106,6 +106,7 @@ struct StepRecord {
   int steps = -1;
   std::string scene_options = "-";
   std::string schema_version = kStepsSchema;
+  double factor_predicted_mb = kUnmeasured;
 
   std::string parameter(const std::string& column) const {
     const auto found = parameters.find(column);
@@ -270,6 +271,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit("steps", r.steps, "steps that were to be simulated", About::bookkeeping);
   visit("scene_options", r.scene_options, "the scene's own options, name=value;name=value", About::problem);
   visit("schema_version", r.schema_version, "what the columns of this row mean", About::bookkeeping);
+  visit("factor_predicted_mb", r.factor_predicted_mb,
+        "memory of a factor and its workspace as predicted before the factorisation, 1e6 bytes");
 }
 
 // "run_id,scene,...\n"

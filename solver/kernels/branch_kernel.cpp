@@ -25,14 +25,36 @@ void BranchKernel::analyze(const PreparedStep& step, const Parts& parts, Paralle
   choose_stages(step, parts, stages_);
   interface_bodies_ = static_cast<int>(
       std::ranges::count_if(stages_.of_body, [this](int s) { return s >= stages_.first_of_interface; }));
-  matrix_.analyze_whole(step, stages_.of_body, stages_.count);
-  list_tasks();
+  const bool analyzed = matrix_.analyze_whole(step, stages_.of_body, stages_.count,
+                                              BlockMatrix::most_blocks(tasks.memory().limit_bytes()));
+  if (analyzed) list_tasks();
+  request_memory(tasks, analyzed);
+  matrix_.allocate();
+}
+
+void BranchKernel::request_memory(ParallelTasks& tasks, bool analyzed) {
+  const PreparedStep& step = *step_;
+  MemoryCount memory;
+  matrix_.count(memory);
+  separators_.count(memory);
+  for (const TaskGraph* graph :
+       {&assembly_graph_, &local_graph_, &interface_graph_, &forward_graph_, &backward_graph_})
+    graph->count(memory);
+  memory.add_grown(stages_.of_body, local_branches_, interface_branches_, waits_, task_of_branch_, places_,
+                   factored_);
+  memory.add<double>(12, step.groups().size());
+  memory.add<double>(6, step.body_count());
+  if (!step.set().axes().empty()) memory.add<double>(12, step.row_count());
+  tasks.memory().request(memory, analyzed);
 }
 
 bool BranchKernel::rebind(const PreparedStep& step, const Parts&, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
   bind(step);
-  return matrix_.rebind_whole(step);
+  if (!matrix_.rebind_whole(step)) return false;
+  request_memory(tasks, true);
+  matrix_.allocate();
+  return true;
 }
 
 // Branches of the interface come after the others, as stages of columns of their own.

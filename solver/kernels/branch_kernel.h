@@ -43,6 +43,7 @@ class BranchKernel : public Kernel {
  private:
   void bind(const PreparedStep& step);
   void list_tasks();
+  void request_memory(ParallelTasks& tasks, bool analyzed);
   void reduce(const Chunk& chunk, std::span<const double> f_r);
   void gather(const Chunk& chunk, std::span<const double> f_v);
   void expand(const Chunk& chunk, std::span<const double> f_r, std::span<double> dlambda) const;
