@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/carried_factor.h"
 #include "solver/kernels/kernel.h"
 #include "solver/proximal_step.h"
 #include "solver/registry.h"
@@ -52,6 +53,12 @@ std::string rounding_note(const PreparedStep& step, std::span<const double> impu
   return text.str();
 }
 
+std::unique_ptr<Kernel> make_kernel(const KernelRow& row, const Settings& settings, bool session) {
+  std::unique_ptr<Kernel> kernel = row.make(settings);
+  if (!session || !kernel->can_be_carried()) return kernel;
+  return std::make_unique<CarriedFactor>(std::move(kernel));
+}
+
 struct Link {
   std::string_view name;
   std::unique_ptr<Strategy> strategy;
@@ -65,8 +72,9 @@ class DirectSolver : public StepSolver {
         kernel_name_(kernel.resolved),
         splits_(kernel.splits),
         settings_(settings),
-        clock_(options.threads),
-        kernel_(kernel.make(settings)),
+        clock_(options.threads, !options.session),
+        kernel_(make_kernel(kernel, settings, options.session)),
+        carried_(dynamic_cast<CarriedFactor*>(kernel_.get())),
         state_(read_direct_options(options, settings), clock_) {
     if (own != nullptr) links_.push_back({strategy, std::move(own)});
   }
@@ -76,6 +84,8 @@ class DirectSolver : public StepSolver {
  private:
   std::string refuse_set(const StepProblem& problem) override;
   SolveSummary do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) override;
+  void solve_in_memory(const StepProblem& problem, const Parts& parts, Solution& solution,
+                       SolveSummary& summary);
   void analyze(const StepProblem& problem, const Parts& parts);
   bool attempt(SolveSummary& summary, double delta, std::span<const double> warm_impulse);
   bool run_attempts(SolveSummary& summary, const StepProblem& problem, std::span<const double> warm_impulse);
@@ -89,6 +99,7 @@ class DirectSolver : public StepSolver {
   Settings settings_;
   StageClock clock_;
   std::unique_ptr<Kernel> kernel_;
+  CarriedFactor* carried_;  // the same, in a session of a kernel that can; else null
   PreparedStep step_;
   SolveState state_;
   std::vector<Link> links_;  // strategies made so far
@@ -127,7 +138,8 @@ bool DirectSolver::reuse_analysis(const StepProblem& problem, const Parts& parts
 void DirectSolver::analyze(const StepProblem& problem, const Parts& parts) {
   // Not analysed until all of it is done: there may be no memory half-way.
   const bool analyzed = std::exchange(analyzed_, false);
-  const bool reused = analyzed && state_.options.reuse_analysis && reuse_analysis(problem, parts);
+  const bool may_reuse = state_.options.reuse_analysis || state_.options.session;
+  const bool reused = analyzed && may_reuse && reuse_analysis(problem, parts);
   {
     StageTimer timer(clock_, Stage::analyze);
     analyzed_body_ = problem.row_body;
@@ -216,25 +228,38 @@ bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& proble
   return false;
 }
 
+// What is refused may be so in the middle of a solve: a session analyses when its factor no longer serves.
 SolveSummary DirectSolver::do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) {
   SolveSummary summary;
+  try {
+    solve_in_memory(problem, parts, solution, summary);
+  } catch (const MemoryRefused& refused) {
+    analyzed_ = false;
+    summary.status = SolveStatus::out_of_memory;
+    summary.message = refused.what();
+  }
+  summary.factor_predicted_mb = 1e-6 * static_cast<double>(state_.tasks.memory().needed_bytes());
+  return summary;
+}
+
+void DirectSolver::solve_in_memory(const StepProblem& problem, const Parts& parts, Solution& solution,
+                                   SolveSummary& summary) {
   summary.kernel = kernel_name_;
   clock_.start();
   {
     StageTimer timer(clock_, Stage::analyze);
     step_.prepare(problem, &state_.tasks);
   }
-  try {
-    analyze(problem, parts);
-  } catch (const MemoryRefused& refused) {
-    summary.status = SolveStatus::out_of_memory;
-    summary.message = refused.what();
-  }
-  summary.factor_predicted_mb = 1e-6 * static_cast<double>(state_.tasks.memory().needed_bytes());
-  if (summary.status == SolveStatus::out_of_memory) return summary;
+  if (carried_ != nullptr) carried_->begin_step(state_.changed_rows);
+  analyze(problem, parts);
   state_.part_of_body = parts.part_of_body;
   step_.set().to_axes(solution.impulse);
-  const bool solved = run_attempts(summary, problem, solution.impulse);
+  bool solved = run_attempts(summary, problem, solution.impulse);
+  if (!solved && carried_ != nullptr && carried_->counts().factor_reuses > 0) {
+    ++summary.fallbacks;
+    carried_->forget();
+    solved = run_attempts(summary, problem, solution.impulse);
+  }
   step_.set().project(state_.impulse);
   solution.impulse = state_.impulse;
   step_.set().to_rows(solution.impulse);
@@ -247,11 +272,15 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, const Parts& par
       if (!std::isfinite(v)) summary.status = SolveStatus::diverged;
     }
   }
+  if (carried_ != nullptr) {
+    summary.factorizations = carried_->counts().factorizations;
+    summary.factor_reuses = carried_->counts().factor_reuses;
+    summary.cg_iterations = carried_->counts().cg_iterations;
+  }
   summary.interface_unknowns = kernel_->interface_unknowns();
   summary.factor_mflop_local = kernel_->local_mflop();
   summary.factor_mflop_interface = kernel_->interface_mflop();
   summary.times = clock_.stop();
-  return summary;
 }
 
 }  // namespace

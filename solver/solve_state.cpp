@@ -47,42 +47,46 @@ void SolveState::solve() {
 
 void SolveState::states_from_impulses() {
   const StepProblem& problem = step->problem();
-  for (std::size_t r = 0; r < impulse.size(); ++r) {
-    state[r] = impulse[r] <= problem.lower[r]   ? RowState::lower
-               : impulse[r] >= problem.upper[r] ? RowState::upper
-                                                : RowState::free;
-  }
+  run_over_rows([&](int first, int last, int) {
+    for (int r = first; r < last; ++r) {
+      state[r] = impulse[r] <= problem.lower[r]   ? RowState::lower
+                 : impulse[r] >= problem.upper[r] ? RowState::upper
+                                                  : RowState::free;
+    }
+  });
 }
 
 bool SolveState::factor_free() {
   const StepProblem& problem = step->problem();
-  for (std::size_t r = 0; r < impulse.size(); ++r) {
-    const double compliance = std::max(problem.compliance[r], kFactoredCompliance * step->diagonal()[r]);
-    weight[r] = state[r] == RowState::free ? 1 / compliance : 0.0;
-    if (state[r] == RowState::lower) impulse[r] = problem.lower[r];
-    if (state[r] == RowState::upper) impulse[r] = problem.upper[r];
-  }
+  run_over_rows([&](int first, int last, int) {
+    for (int r = first; r < last; ++r) {
+      const double compliance = std::max(problem.compliance[r], kFactoredCompliance * step->diagonal()[r]);
+      weight[r] = state[r] == RowState::free ? 1 / compliance : 0.0;
+      if (state[r] == RowState::lower) impulse[r] = problem.lower[r];
+      if (state[r] == RowState::upper) impulse[r] = problem.upper[r];
+    }
+  });
   update_velocity();
   return factor();
 }
 
 void SolveState::correct_free() {
   std::fill(f_v.begin(), f_v.end(), 0.0);
-  for (std::size_t r = 0; r < impulse.size(); ++r) f_r[r] = -slack[r];
+  run_over_rows([&](int first, int last, int) {
+    for (int r = first; r < last; ++r) f_r[r] = -slack[r];
+  });
   solve();
-  for (std::size_t r = 0; r < impulse.size(); ++r) {
-    if (state[r] == RowState::free) impulse[r] += dlambda[r];
-  }
+  run_over_rows([&](int first, int last, int) {
+    for (int r = first; r < last; ++r) {
+      if (state[r] == RowState::free) impulse[r] += dlambda[r];
+    }
+  });
   update_velocity();
 }
 
 double SolveState::refine_free(double target, int most_steps, bool count) {
   const auto largest = [&] {
-    double worst = 0;
-    for (std::size_t r = 0; r < impulse.size(); ++r) {
-      if (state[r] == RowState::free && !(std::abs(slack[r]) <= worst)) worst = std::abs(slack[r]);
-    }
-    return worst;
+    return greatest_over_rows([&](int r) { return state[r] == RowState::free ? std::abs(slack[r]) : 0.0; });
   };
   double worst = largest();
   for (int k = 0; k < most_steps && worst > target; ++k) {
@@ -98,15 +102,21 @@ double SolveState::refine_free(double target, int most_steps, bool count) {
 int SolveState::find_violations(double tolerance) {
   StageTimer timer(tasks.clock(), Stage::check);
   const StepProblem& problem = step->problem();
+  const auto is_violated = [&](int r) {
+    const double lower = problem.lower[r], upper = problem.upper[r];
+    if (lower == upper) return false;
+    const double reach = tolerance / step->diagonal()[r];
+    return state[r] == RowState::free    ? impulse[r] < lower - reach || impulse[r] > upper + reach
+           : state[r] == RowState::lower ? slack[r] < -tolerance
+                                         : slack[r] > tolerance;
+  };
+  row_is_violated.resize(impulse.size());
+  run_over_rows([&](int first, int last, int) {
+    for (int r = first; r < last; ++r) row_is_violated[r] = is_violated(r);
+  });
   violated.clear();
   for (int r = 0; r < static_cast<int>(impulse.size()); ++r) {
-    const double lower = problem.lower[r], upper = problem.upper[r];
-    if (lower == upper) continue;
-    const double reach = tolerance / step->diagonal()[r];
-    const bool wrong = state[r] == RowState::free ? impulse[r] < lower - reach || impulse[r] > upper + reach
-                       : state[r] == RowState::lower ? slack[r] < -tolerance
-                                                     : slack[r] > tolerance;
-    if (wrong) violated.push_back(r);
+    if (row_is_violated[r]) violated.push_back(r);
   }
   return static_cast<int>(violated.size());
 }

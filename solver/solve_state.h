@@ -7,7 +7,9 @@
 // axes and rows are the same.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "solver/direct_options.h"
@@ -76,6 +78,16 @@ struct SolveState {
   // Moves one violated row to the state its violation asks for.
   void flip(int row);
 
+  // Light work on rows in ranges that depend on their number alone, one task each: task(first, last, range). A short
+  // vector is one range: to wake a thread for it would take longer.
+  static constexpr int kRowsOfARange = 4096;
+  int range_count() const { return (step->row_count() + kRowsOfARange - 1) / kRowsOfARange; }
+  template <class Task>
+  void run_over_rows(const Task& task);
+  // The greatest of the values of all rows, at least 0; infinite where one is no number.
+  template <class Value>
+  double greatest_over_rows(const Value& value_of);
+
   double residual() const { return step->residual(impulse, slack); }
 
   DirectOptions options;
@@ -88,9 +100,37 @@ struct SolveState {
   std::vector<RowState> state;                   // (m)
   std::vector<double> weight;                    // (m) D of the present factor
   std::vector<double> f_v, f_r, dv, dlambda;     // right-hand sides and increments
-  std::vector<int> violated;                     // rows found by find_violations
-  std::vector<double> row_impulse;               // (m) scratch: impulses in rows where a box is turned
-  std::span<const int> part_of_body;             // (n) of the solve, for strategies that look at the cut
+  // In a session: rows that the last solve left in another state than the warm start had told; all where it does not know.
+  int changed_rows = std::numeric_limits<int>::max();
+  std::vector<int> violated;        // rows found by find_violations
+  std::vector<double> row_impulse;  // (m) scratch: impulses in rows where a box is turned
+  // Scratch: of greatest_over_rows and find_violations.
+  std::vector<double> range_values;
+  std::vector<char> row_is_violated;
+  std::span<const int> part_of_body;  // (n) of the solve, for strategies that look at the cut
 };
+
+template <class Task>
+void SolveState::run_over_rows(const Task& task) {
+  tasks.run(range_count(), [&](int range) {
+    const int first = range * kRowsOfARange;
+    task(first, std::min(first + kRowsOfARange, step->row_count()), range);
+  });
+}
+
+template <class Value>
+double SolveState::greatest_over_rows(const Value& value_of) {
+  range_values.assign(range_count(), 0.0);
+  run_over_rows([&](int first, int last, int range) {
+    double greatest = 0;
+    for (int r = first; r < last; ++r) {
+      const double value = value_of(r);
+      if (value <= greatest) continue;
+      greatest = value > greatest ? value : std::numeric_limits<double>::infinity();
+    }
+    range_values[range] = greatest;
+  });
+  return range_values.empty() ? 0.0 : std::ranges::max(range_values);
+}
 
 }  // namespace cleave

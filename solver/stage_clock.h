@@ -21,8 +21,8 @@ class StageClock {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // threads: of the solves that are timed.
-  explicit StageClock(int threads = 1) : models_(threads == 1) {}
+  // threads: of the solves that are timed. graphs_stay: none is built anew during a solve; else there is no model.
+  explicit StageClock(int threads = 1, bool graphs_stay = true) : models_(threads == 1 && graphs_stay) {}
 
   void start();                                // begins a solve: all zero
   void add(Stage stage, double milliseconds);  // serial or parallel wall time of a stage

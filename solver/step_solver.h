@@ -33,6 +33,9 @@ bool has_result(SolveStatus status);
 struct SolveOptions {
   int threads = 1;                // >= 1
   double target_m_per_s = 1e-11;  // residual aimed at; exact is judged at kExactLimit
+  // Solves are those of consecutive steps of one simulation, each from the solution before: what pays is carried from
+  // one to the next (carried_factor.h), and results depend on the steps before, within the target.
+  bool session = false;
   // Where there is one and it comes true, a solve ends with SolveStopped at its next factorisation,
   // back-substitution, sweep or block column of a dense interface. Must outlive the solver.
   const std::atomic<bool>* stop = nullptr;
@@ -48,6 +51,8 @@ struct SolveSummary {
   std::string auto_reason = "-";  // why auto chose it
   int iterations = 0;             // active-set or interior-point iterations, sweeps for pgs
   int factorizations = 0;         // numeric factorisations of the whole system
+  int factor_reuses = 0;          // systems solved with the factor of another, in a session
+  int cg_iterations = 0;          // of conjugate gradients with such a factor
   int fallbacks = 0;              // hand-overs from one strategy to the next
   int refinements = 0;            // iterative refinement steps at the end
   int engine_messages = 0;        // given by a foreign engine while it solved

@@ -89,6 +89,7 @@ ExpectedRows::ExpectedRows(const StoredManifest& manifest) {
   common_.threads = integer_of(manifest, "threads");
   common_.repeat_count = integer_of(manifest, "repeats");
   common_.skip_small_islands = flag_of(manifest, "skip-small-islands");
+  common_.session = flag_of(manifest, "session");
   separate_ = common_.mode == "separate";
   add_combinations(manifest);
   if (is_replay_) {

@@ -4,6 +4,7 @@
 #include <set>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
 
 #include "harness/base/names.h"
 #include "harness/base/progress.h"
@@ -49,6 +50,22 @@ std::vector<OptionValue> values_of(const ReplayOptions& options) {
   values.push_back({"write-solutions", OptionKind::flag, flag(options.write_solutions)});
   values.push_back({"files", OptionKind::lines, joined(options.files, "\n"), About::bookkeeping, false});
   return values;
+}
+
+// Before anything is created. A session is of one simulation's steps, one after the other.
+void check_files(const ReplayOptions& options) {
+  std::string before;
+  std::tuple<std::string, std::uint64_t, int, int> last;
+  for (const std::string& path : options.files) {
+    const ProblemFile file = read_problem_file_aloud(path);
+    const std::tuple now{file.scene, file.seed, file.problem.body_count(), file.step};
+    if (options.solve.session && !before.empty() && now != last)
+      throw std::invalid_argument("FILES: " + path + " is not the step after that of " + before +
+                                  ", which --session asks for");
+    before = path;
+    last = now;
+    ++std::get<3>(last);
+  }
 }
 
 // The files of --write-solutions must not meet each other or replace what is replayed.
@@ -170,7 +187,7 @@ class Replay {
 
 int replay(const ReplayOptions& options, const std::vector<std::string>& argv) {
   if (options.files.empty()) throw std::invalid_argument("FILES: at least one problem file is required");
-  for (const std::string& file : options.files) read_problem_file_aloud(file);  // before anything is created
+  check_files(options);
   if (options.write_solutions) check_names(options);
   check_not_taken_away(options);
   check_output_directory(options.solve.out, options.solve.force, files_written(options));

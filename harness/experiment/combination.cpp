@@ -96,8 +96,10 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
     : name_{.solver = solver.text},
       solver_named_(solver),
       repeats_(options.repeats),
-      solve_options_{
-          .threads = options.threads, .stop = stop, .memory_limit_bytes = options.memory_limit_bytes},
+      solve_options_{.threads = options.threads,
+                     .session = options.session,
+                     .stop = stop,
+                     .memory_limit_bytes = options.memory_limit_bytes},
       context_(&context),
       solver_(make_solver(solver, solve_options_, context)) {
   if (solver_->uses_partition()) {
@@ -239,7 +241,9 @@ std::vector<Outcome> measure_all(std::span<Combination> combinations, const Step
 
 Combination make_advancing_combination(const RunOptions& options, const StepContext& context,
                                        const std::atomic<bool>* stop) {
-  return {options.partitioners.front(), options.refiners.front(), options.advance, options, context, stop};
+  RunOptions advancing = options;
+  advancing.session = false;
+  return {options.partitioners.front(), options.refiners.front(), options.advance, advancing, context, stop};
 }
 
 }  // namespace cleave

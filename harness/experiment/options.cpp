@@ -171,6 +171,15 @@ NamedAlgorithm named(const std::string& kind, const Algorithm& algorithm) {
 
 RunOptions default_run_options() { return options_with({}); }
 
+// A second solve of the same step would start from the answer of the first.
+void read_session(const Given& given, RunOptions& options) {
+  if (!options.session) return;
+  if (given.contains("repeats") && options.repeats != 1)
+    reject("repeats",
+           std::to_string(options.repeats) + " is not 1, which --session allows: it solves every step once");
+  options.repeats = 1;
+}
+
 RunOptions parse_run_options(const std::map<std::string, std::string>& given,
                              const std::set<std::string>& stored) {
   require(given, "scene", "is required; choices: " + joined(names_of(scenes())));
@@ -180,6 +189,7 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given,
   check_scene_options(scene_row(options.scene), scene_given(options.common));
   read_stiffness(given, options);
   override_solvers(given, options);
+  read_session(given, options);
   read_friction(options);
   check_owned(options, stored, true);
   if (options.mode == RunMode::separate) {
@@ -201,6 +211,7 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
   RunOptions options = options_with(read_common(given));
   read_table(given, options);
   override_solvers(given, options);
+  read_session(given, options);
   check_owned(options, stored, false);
   for (const AlgorithmEntry& ode : ode_baselines())
     if (std::ranges::count(options.solvers, ode.name, &Algorithm::name) > 0)

@@ -35,6 +35,7 @@ struct RunOptions {
   std::vector<int> at;  // ascending: measure these steps only (record); empty: measure_every decides
   int skip = 0;         // read by reports, not by the run
   int repeats = 3;
+  bool session = false;  // solvers carry what pays from step to step; each cell is then solved once
   int threads = 1;
   double memory_limit_gb = std::numeric_limits<double>::quiet_NaN();             // NaN: what the machine has
   std::uint64_t memory_limit_bytes = std::numeric_limits<std::uint64_t>::max();  // what that is

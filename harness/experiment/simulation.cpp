@@ -65,6 +65,8 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
       set_problem_columns(problem, common);
       common.max_penetration_m = deepest_m(contacts);
       measured = measure(combinations, problem, common);
+    } else if (options_.session) {
+      for (Combination& combination : combinations) combination.solve(problem, step);
     }
 
     // One solution moves the bodies, and its impulses are where the next step starts from.
@@ -113,7 +115,9 @@ void Simulation::run_worlds(const RowSink& write, const Progress& progress) {
     run_world(combinations_, advancing, write, progress);
   } else {
     // Equal solvers that advance: one does not see what the other keeps in its scratch.
-    std::vector<Combination> advancing = make_combinations(options_, context_, &stop_);
+    RunOptions options = options_;
+    options.session = false;
+    std::vector<Combination> advancing = make_combinations(options, context_, &stop_);
     for (std::size_t i = 0; i < combinations_.size(); ++i)
       run_world({&combinations_[i], 1}, advancing[i], write, progress);
   }

@@ -42,6 +42,7 @@ StepRecord solve_columns(const RunOptions& options) {
   StepRecord row;
   row.threads = options.threads;
   row.skip_small_islands = options.skip_small_islands;
+  row.session = options.session;
   return row;
 }
 

@@ -93,6 +93,8 @@ void StepRecord::set_summary(const SolveSummary& summary) {
   factorizations = summary.factorizations;
   fallbacks = summary.fallbacks;
   refinements = summary.refinements;
+  factor_reuses = summary.factor_reuses;
+  cg_iterations = summary.cg_iterations;
 }
 
 void StepRecord::set_verdict(const ResidualReport& report) {

@@ -82,6 +82,7 @@ struct StepRecord {
   double t_s_other_ms = kUnmeasured;
   std::array<double, kModelWorkers.size()> t_s_model_ms = filled<kModelWorkers.size()>();
   int iterations = -1, factorizations = -1, fallbacks = -1, refinements = -1;
+  int factor_reuses = -1, cg_iterations = -1;
   std::string auto_reason = "-";
   // The verdict.
   double residual_m_per_s = kUnmeasured, residual_bilateral_m_per_s = kUnmeasured;
@@ -101,7 +102,7 @@ struct StepRecord {
   double dt_s = kUnmeasured, cfm = kUnmeasured, erp = kUnmeasured;
   double gravity_m_per_s2 = kUnmeasured, match_tolerance = kUnmeasured;
   int contact_cap = -1;
-  int skip_small_islands = -1, cold = -1;
+  int skip_small_islands = -1, cold = -1, session = -1;
   std::string mode = "-", advance = "-";
   int steps = -1;
   std::string scene_options = "-";
@@ -251,6 +252,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit_machine("peak_memory_mb", r.peak_memory_mb, "largest resident set of the process so far, 1e6 bytes");
   visit("residual_relative", r.residual_relative,
         "residual_m_per_s over the largest entry of v0, J v0 and b, in the problem's own units");
+  visit("factor_reuses", r.factor_reuses, "systems solved with the factor of another, in a session");
+  visit("cg_iterations", r.cg_iterations, "iterations of conjugate gradients with such a factor");
   visit("dt_s", r.dt_s, "step h", About::problem);
   visit("cfm", r.cfm, "constraint force mixing; compliance C = cfm / h", About::problem);
   visit("erp", r.erp, "share of a position error removed per step", About::problem);
@@ -266,6 +269,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         About::partition);
   visit("cold", r.cold, "1 where solves start from zero impulses, 0 where from those of the last step",
         About::problem);
+  visit("session", r.session, "1 where a solver carries what it can from step to step, else 0",
+        About::solver);
   visit("mode", r.mode, "lockstep or separate worlds", About::problem);
   visit("advance", r.advance, "solver that advances the world in lockstep", About::problem);
   visit("steps", r.steps, "steps that were to be simulated", About::bookkeeping);

@@ -2,13 +2,11 @@
 
 #include <algorithm>
 
-#include "solver/group_products.h"
-
 namespace cleave {
 
 void BranchKernel::bind(const PreparedStep& step) {
   step_ = &step;
-  group_sums_.resize(12 * step.groups().size());
+  system_.bind(step, matrix_.cholesky().symbolic().position_of_node());
   x_.resize(6 * static_cast<std::size_t>(step.body_count()));
 }
 
@@ -21,19 +19,18 @@ void BranchKernel::choose_separators(const PreparedStep& step, const Parts& part
 
 void BranchKernel::analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
-  bind(step);
   choose_stages(step, parts, stages_);
   interface_bodies_ = static_cast<int>(
       std::ranges::count_if(stages_.of_body, [this](int s) { return s >= stages_.first_of_interface; }));
   const bool analyzed = matrix_.analyze_whole(step, stages_.of_body, stages_.count,
                                               BlockMatrix::most_blocks(tasks.memory().limit_bytes()));
   if (analyzed) list_tasks();
-  request_memory(tasks, analyzed);
+  request_memory(step, tasks, analyzed);
   matrix_.allocate();
+  bind(step);
 }
 
-void BranchKernel::request_memory(ParallelTasks& tasks, bool analyzed) {
-  const PreparedStep& step = *step_;
+void BranchKernel::request_memory(const PreparedStep& step, ParallelTasks& tasks, bool analyzed) {
   MemoryCount memory;
   matrix_.count(memory);
   separators_.count(memory);
@@ -50,9 +47,9 @@ void BranchKernel::request_memory(ParallelTasks& tasks, bool analyzed) {
 
 bool BranchKernel::rebind(const PreparedStep& step, const Parts&, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
-  bind(step);
   if (!matrix_.rebind_whole(step)) return false;
-  request_memory(tasks, true);
+  bind(step);
+  request_memory(step, tasks, true);
   matrix_.allocate();
   return true;
 }
@@ -103,9 +100,9 @@ void BranchKernel::list_tasks() {
 bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
   {
     StageTimer timer(tasks.clock(), Stage::assemble);
-    rows_.set(step_->problem(), weights);
+    system_.set(weights);
   }
-  tasks.run(Stage::assemble, assembly_graph_, [&](int b) { matrix_.assemble(rows_, b); });
+  tasks.run(Stage::assemble, assembly_graph_, [&](int b) { matrix_.assemble(system_.rows(), b); });
   std::ranges::fill(factored_, 1);
   const auto factor_branch = [&](int b) {
     for (const int child : matrix_.cholesky().symbolic().child_branches(b)) {
@@ -118,54 +115,34 @@ bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
   return std::ranges::find(factored_, 0) == factored_.end();
 }
 
-void BranchKernel::reduce(const Chunk& chunk, std::span<const double> f_r) {
-  const std::span<const double> d = rows_.d();
-  for (int g = chunk.first; g < chunk.last; ++g) {
-    double sum[12];
-    sum_rows(
-        step_->groups()[g], rows_.jacobian(), [&](int r) { return d[r] * f_r[r]; }, sum);
-    std::copy_n(sum, 12, group_sums_.data() + 12L * g);
-  }
-}
-
-void BranchKernel::gather(const Chunk& chunk, std::span<const double> f_v) {
-  const auto position = matrix_.cholesky().symbolic().position_of_node();
-  for (int body = chunk.first; body < chunk.last; ++body)
-    add_sides(step_->sides_of_body(body), group_sums_.data(), f_v.data() + 6L * body,
-              x_.data() + 6L * position[body]);
-}
-
-void BranchKernel::expand(const Chunk& chunk, std::span<const double> f_r, std::span<double> dlambda) const {
-  const std::span<const double> d = rows_.d();
-  const auto position = matrix_.cholesky().symbolic().position_of_node();
-  for (int g = chunk.first; g < chunk.last; ++g) {
-    const RowGroup& group = step_->groups()[g];
-    double both[12];
-    load_pair(x_.data() + 6L * position[group.body_a],
-              group.body_b < 0 ? nullptr : x_.data() + 6L * position[group.body_b], both);
-    for (int r = group.first_row; r < group.first_row + group.row_count; ++r)
-      dlambda[r] = d[r] * (f_r[r] - row_times(rows_.jacobian() + 12L * r, both));
-  }
+void BranchKernel::substitute(ParallelTasks& tasks) {
+  BlockCholesky& cholesky = matrix_.cholesky();
+  const int last_branch = matrix_.branch_count() - 1;
+  tasks.run(Stage::solve, forward_graph_, [&](int b) { cholesky.forward(b, x_.data()); });
+  tasks.run(Stage::solve, backward_graph_, [&](int t) { cholesky.backward(last_branch - t, x_.data()); });
 }
 
 void BranchKernel::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
                          std::span<double> dlambda, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::solve);
-  BlockCholesky& cholesky = matrix_.cholesky();
   const auto groups = step_->group_chunks(), bodies = step_->body_chunks();
   const int group_tasks = static_cast<int>(groups.size()), body_tasks = static_cast<int>(bodies.size());
-  const int last_branch = matrix_.branch_count() - 1;
-  const auto position = cholesky.symbolic().position_of_node();
-  tasks.run(group_tasks, [&](int i) { reduce(groups[i], f_r); });
-  tasks.run(body_tasks, [&](int i) { gather(bodies[i], f_v); });
-  tasks.run(Stage::solve, forward_graph_, [&](int b) { cholesky.forward(b, x_.data()); });
-  tasks.run(Stage::solve, backward_graph_, [&](int t) { cholesky.backward(last_branch - t, x_.data()); });
+  tasks.run(group_tasks, [&](int i) { system_.weigh(groups[i], f_r); });
+  tasks.run(body_tasks, [&](int i) { system_.collect(bodies[i], f_v, x_); });
+  substitute(tasks);
   tasks.run(group_tasks + body_tasks, [&](int i) {
-    if (i < group_tasks) return expand(groups[i], f_r, dlambda);
-    const Chunk& chunk = bodies[i - group_tasks];
-    for (int body = chunk.first; body < chunk.last; ++body)
-      std::copy_n(x_.data() + 6L * position[body], 6, dv.data() + 6L * body);
+    if (i < group_tasks) return system_.expand(groups[i], x_, f_r, dlambda);
+    system_.to_bodies(bodies[i - group_tasks], x_, dv);
   });
+}
+
+void BranchKernel::apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) {
+  StageTimer timer(tasks.clock(), Stage::solve);
+  const auto bodies = step_->body_chunks();
+  const int body_tasks = static_cast<int>(bodies.size());
+  tasks.run(body_tasks, [&](int i) { system_.to_positions(bodies[i], f, x_); });
+  substitute(tasks);
+  tasks.run(body_tasks, [&](int i) { system_.to_bodies(bodies[i], x_, x); });
 }
 
 double BranchKernel::local_mflop() const {
@@ -180,6 +157,11 @@ double BranchKernel::interface_mflop() const {
   for (int s = stages_.first_of_interface; s < stages_.count; ++s)
     flops += matrix_.cholesky().symbolic().factor_flops(s);
   return flops * 1e-6;
+}
+
+// A multiplication and an addition for every entry of L, forth and back.
+double BranchKernel::apply_mflop() const {
+  return 4e-6 * static_cast<double>(matrix_.cholesky().symbolic().factor_size());
 }
 
 }  // namespace cleave

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "solver/block_matrix.h"
+#include "solver/body_system.h"
 #include "solver/kernels/kernel.h"
 #include "solver/separators.h"
 #include "solver/task_graph.h"
@@ -28,6 +29,9 @@ class BranchKernel : public Kernel {
   int interface_unknowns() const override { return 6 * interface_bodies_; }
   double local_mflop() const override;
   double interface_mflop() const override;
+  bool can_be_carried() const override { return true; }
+  void apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) override;
+  double apply_mflop() const override;
 
  protected:
   // Of every body, in the order of elimination; no body in the stages of the interface leaves one.
@@ -43,15 +47,13 @@ class BranchKernel : public Kernel {
  private:
   void bind(const PreparedStep& step);
   void list_tasks();
-  void request_memory(ParallelTasks& tasks, bool analyzed);
-  void reduce(const Chunk& chunk, std::span<const double> f_r);
-  void gather(const Chunk& chunk, std::span<const double> f_v);
-  void expand(const Chunk& chunk, std::span<const double> f_r, std::span<double> dlambda) const;
+  void request_memory(const PreparedStep& step, ParallelTasks& tasks, bool analyzed);
+  void substitute(ParallelTasks& tasks);
 
   const PreparedStep* step_ = nullptr;
   Stages stages_;
   Separators separators_;
-  WeightedRows rows_;
+  BodySystem system_;
   BlockMatrix matrix_;
   int interface_bodies_ = 0;
   std::vector<int> local_branches_, interface_branches_;
@@ -60,8 +62,7 @@ class BranchKernel : public Kernel {
   std::vector<int> task_of_branch_;         // scratch
   std::vector<double> places_;              // scratch
   std::vector<char> factored_;
-  std::vector<double> group_sums_;  // (groups, 12) J^T D f_r of each
-  std::vector<double> x_;           // (n, 6) by position
+  std::vector<double> x_;  // (n, 6) by position
 };
 
 }  // namespace cleave

@@ -45,6 +45,13 @@ class Kernel {
   // Arithmetic of the last factorisation, without padding, in Mflop.
   virtual double local_mflop() const = 0;
   virtual double interface_mflop() const { return 0; }
+
+  // Whether its factor is one of H alone, without rows, so that it can serve a later step (carried_factor.h). Only
+  // then is there:
+  virtual bool can_be_carried() const { return false; }
+  // x (n, 6) = H^-1 f with the H of the last factorisation, of whatever step that was with these bodies.
+  virtual void apply_factor(std::span<const double>, std::span<double>, ParallelTasks&) {}
+  virtual double apply_mflop() const { return 0; }  // arithmetic of apply_factor
 };
 
 std::unique_ptr<Kernel> make_dense_kernel(const Settings& settings);

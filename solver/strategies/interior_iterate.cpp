@@ -40,19 +40,20 @@ void InteriorIterate::start(SolveState& state) {
 
 bool InteriorIterate::factor(SolveState& state, double delta) {
   const StepProblem& problem = state.step->problem();
-  for (std::size_t r = 0; r < state.weight.size(); ++r) {
-    state.weight[r] = std::max(problem.compliance[r], delta * state.step->diagonal()[r]);
-  }
+  state.run_over_rows([&](int first, int last, int) {
+    for (int r = first; r < last; ++r)
+      state.weight[r] = std::max(problem.compliance[r], delta * state.step->diagonal()[r]);
+  });
   barrier_.weigh(state, state.weight);
   return state.factor();
 }
 
 void InteriorIterate::find_direction(SolveState& state, Aim aim) {
-  set_products(aim);
+  set_products(state, aim);
   solve(state);
 }
 
-void InteriorIterate::set_products(Aim aim) {
+void InteriorIterate::set_products(SolveState& state, Aim aim) {
   const double now = mean_product(0);
   if (aim == Aim::affine) target_ = 0;
   if (aim == Aim::centre) target_ = constants_.centring * now;
@@ -62,31 +63,28 @@ void InteriorIterate::set_products(Aim aim) {
     for (int power = 0; power < constants_.target_power; ++power) share *= ratio;
     target_ = share * now;
   }
-  barrier_.aim(target_, aim == Aim::mehrotra);
+  barrier_.aim(state, target_, aim == Aim::mehrotra);
 }
 
 void InteriorIterate::solve(SolveState& state) {
-  barrier_.right_hand_side(state.slack, state.f_r);
+  barrier_.right_hand_side(state);
   std::fill(state.f_v.begin(), state.f_v.end(), 0.0);
   state.solve();
-  barrier_.follow(state.dlambda);
-  course_ = barrier_.course();
+  course_ = barrier_.follow(state);
 }
 
 double InteriorIterate::rounding(SolveState& state) {
-  barrier_.right_hand_side(state.slack, state.f_r);
+  barrier_.right_hand_side(state);
   change_.resize(state.velocity.size());
   row_error_.resize(state.impulse.size());
   state.step->velocity(state.step->set().in_rows(state.dlambda, state.row_impulse), change_);
   for (std::size_t c = 0; c < change_.size(); ++c) change_[c] -= state.step->problem().free_velocity[c];
   state.step->jacobian_times(change_, row_error_);
   state.step->set().to_axes(row_error_);
-  double worst = 0;
-  for (std::size_t r = 0; r < row_error_.size(); ++r) {
-    if (barrier_.is_fixed(r)) continue;
-    worst = std::max(worst, std::abs(state.f_r[r] - row_error_[r] - state.dlambda[r] / state.weight[r]));
-  }
-  return worst;
+  return state.greatest_over_rows([&](int r) {
+    if (barrier_.is_fixed(r)) return 0.0;
+    return std::abs(state.f_r[r] - row_error_[r] - state.dlambda[r] / state.weight[r]);
+  });
 }
 
 double InteriorIterate::mean_product(double step) const {
@@ -103,7 +101,7 @@ void InteriorIterate::correct_centrality(SolveState& state) {
     kept_dlambda_ = state.dlambda;
     kept_course_ = course_;
     barrier_.keep_direction();
-    barrier_.correct(trial, low, high);
+    barrier_.correct(state, trial, low, high);
     solve(state);
     if (course_.largest_step >= step + constants_.least_gain * (trial - step)) continue;
     state.dlambda = kept_dlambda_;
@@ -114,20 +112,15 @@ void InteriorIterate::correct_centrality(SolveState& state) {
 }
 
 void InteriorIterate::advance(SolveState& state, double step) {
-  for (std::size_t r = 0; r < state.impulse.size(); ++r) {
-    if (!barrier_.is_fixed(r)) state.impulse[r] += step * state.dlambda[r];
-  }
-  barrier_.advance(step);
+  barrier_.advance(state, step);
   state.update_velocity();
 }
 
-double InteriorIterate::error(const SolveState& state) {
-  row_error_ = state.slack;
-  double worst = barrier_.error(state.step->diagonal(), row_error_);
-  for (std::size_t r = 0; r < row_error_.size(); ++r) {
-    if (!barrier_.is_fixed(r) && !(std::abs(row_error_[r]) <= worst)) worst = std::abs(row_error_[r]);
-  }
-  return worst;
+double InteriorIterate::error(SolveState& state) {
+  row_error_.resize(state.slack.size());
+  const double worst = barrier_.error(state, row_error_);
+  return std::max(worst, state.greatest_over_rows(
+                             [&](int r) { return barrier_.is_fixed(r) ? 0.0 : std::abs(row_error_[r]); }));
 }
 
 void InteriorIterate::keep(const SolveState& state) {

@@ -52,7 +52,7 @@ class InteriorIterate {
   void advance(SolveState& state, double step);
 
   // The largest violation of the conditions as a velocity (m/s): of the equation in w, and min(d s, z).
-  double error(const SolveState& state);
+  double error(SolveState& state);
 
   // A row is at a bound where the multiplier outweighs the slack, else free.
   void read_active_set(SolveState& state) const { barrier_.read_active_set(state); }
@@ -63,7 +63,7 @@ class InteriorIterate {
 
  private:
   void choose_impulses(SolveState& state);
-  void set_products(Aim aim);
+  void set_products(SolveState& state, Aim aim);
   void solve(SolveState& state);
 
   InteriorConstants constants_;

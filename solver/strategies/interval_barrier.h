@@ -15,6 +15,8 @@
 //
 //     D_r = 1 / (C_r + sum z / s),   f_r = -w + sum sigma (z + (c - z gap) / s).
 //
+// Loops over pairs are dealt out in the ranges of SolveState::run_over_rows; a row's pairs are of its range.
+//
 // Rows whose bounds coincide are fixed, with D = 0; unbounded rows have no pair.
 #pragma once
 
@@ -42,22 +44,21 @@ class IntervalBarrier {
   void start(SolveState& state, std::span<const double> speed);
 
   // weight (m): the compliance that is factored in, D out. Fixes s, z and gap for the directions that follow.
-  void weigh(const SolveState& state, std::span<double> weight);
+  void weigh(SolveState& state, std::span<double> weight);
 
   // Products s z that the direction aims at, less the second-order term of the last direction or not.
-  void aim(double product, bool second_order);
-  void right_hand_side(std::span<const double> slack, std::span<double> f_r) const;
-  void follow(std::span<const double> dlambda);  // ds and dz
-  BarrierCourse course() const;                  // of the direction
+  void aim(SolveState& state, double product, bool second_order);
+  void right_hand_side(SolveState& state) const;  // state.f_r from state.slack
+  BarrierCourse follow(SolveState& state);        // ds and dz from state.dlambda; returns where they lead
 
   // Aims products that a step of `trial` would leave outside of [low, high] back at it.
-  void correct(double trial, double low, double high);
+  void correct(SolveState& state, double trial, double low, double high);
   void keep_direction() { before_ = now_; }
   void restore_direction() { now_ = before_; }
 
-  void advance(double step);
-  // row_error (m): w in, what is left of the equation in w out. Returns the largest min(d s, z).
-  double error(std::span<const double> d, std::span<double> row_error) const;
+  void advance(SolveState& state, double step);  // impulses, slacks and multipliers
+  // row_error (m): what is left of the equation in w. Returns the largest min(d s, z).
+  double error(SolveState& state, std::span<double> row_error);
 
   // A row is at a bound where the multiplier outweighs the slack, else free.
   void read_active_set(SolveState& state) const;
@@ -79,10 +80,16 @@ class IntervalBarrier {
   };
 
   void add_pairs(SolveState& state, int row, double speed);
+  template <class Task>
+  void run_over_pairs(SolveState& state, const Task& task) const;
+  void follow_range(int first, int last, std::span<const double> dlambda, BarrierCourse& course);
 
   InteriorConstants constants_;
-  std::vector<Pair> pairs_;  // ascending row
-  std::vector<char> fixed_;  // (m)
+  std::vector<Pair> pairs_;             // ascending row
+  std::vector<int> pair_first_;         // (ranges + 1)
+  std::vector<BarrierCourse> courses_;  // scratch: of the ranges, largest_step its inverse
+  std::vector<double> worst_;           // scratch: of the ranges
+  std::vector<char> fixed_;             // (m)
   std::vector<double> s_, z_;
   std::vector<double> inverse_s_, inverse_z_, gap_;  // of the iterate that was factored
   Direction now_, before_;

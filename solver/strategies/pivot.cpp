@@ -24,6 +24,12 @@ constexpr double kProgress = 0.75;
 constexpr int kRestarts = 2;     // without a new least count of violations, before single flips
 constexpr int kSingleFlips = 1;  // without progress, before giving up
 
+int count_changes(const std::vector<RowState>& before, const std::vector<RowState>& after) {
+  int changed = 0;
+  for (std::size_t r = 0; r < before.size(); ++r) changed += before[r] != after[r];
+  return changed;
+}
+
 // Sweeps to start from, options.predictor_sweeps at most: a batch of five costs about a quarter of a factorisation with
 // what goes with it. Six recorded steps of a pile of 200 boxes (cfm 1e-5) take 53 factorisations from a cold start after
 // 10 sweeps each, 26 after 40 and 21 after 80; over piles of 200 to 800, towers and chains, cold and warm, the time was
@@ -35,7 +41,10 @@ class Pivot : public Strategy {
       StageTimer timer(state.tasks.clock(), Stage::predict);
       predictor_.bind(*state.step);
     }
-    sweep(state, state.options.predictor_sweeps);
+    const bool knows_set =
+        state.options.session && state.changed_rows <= kSettledShare * static_cast<double>(state.state.size());
+    sweep(state, knows_set ? 0 : state.options.predictor_sweeps);
+    state.changed_rows = state.step->row_count();
     int least = std::numeric_limits<int>::max(), stalled = 0;
     const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
     for (int k = 0; k < state.options.max_iterations; ++k) {
@@ -68,25 +77,25 @@ class Pivot : public Strategy {
     }
     state.update_velocity();
     state.states_from_impulses();
+    if (state.options.session && sweeps != kRestartSweeps) warm_state_ = state.state;
     for (int done = 0; done < sweeps; done += SlabSweeps::kMostSweeps) {
       last_state_ = state.state;
       predictor_.run(std::min(SlabSweeps::kMostSweeps, sweeps - done), state.impulse, state.velocity,
                      state.tasks);
       state.states_from_impulses();
-      int changed = 0;
-      for (std::size_t r = 0; r < last_state_.size(); ++r) changed += last_state_[r] != state.state[r];
-      if (changed <= kSettledShare * static_cast<double>(last_state_.size())) break;
+      if (count_changes(last_state_, state.state) <= kSettledShare * static_cast<double>(last_state_.size())) break;
     }
   }
 
-  static bool finish(SolveState& state, double tolerance) {
+  bool finish(SolveState& state, double tolerance) {
     StageTimer timer(state.tasks.clock(), Stage::refine);
     state.refine_free(0.1 * tolerance, 2, true);
+    if (state.options.session) state.changed_rows = count_changes(warm_state_, state.state);
     return state.residual() <= state.step->exact_limit_m_per_s();
   }
 
   SlabSweeps predictor_;
-  std::vector<RowState> last_state_;
+  std::vector<RowState> last_state_, warm_state_;
 };
 
 }  // namespace

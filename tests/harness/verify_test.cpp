@@ -293,16 +293,25 @@ TEST_F(Verify, FindsAChangeOfEveryCellItCompares) {
 
 // What the manifest's options decide, and what a row of a replay cannot know.
 TEST_F(Verify, FindsAChangeOfEveryCellOfTheOptions) {
-  const std::vector<std::pair<std::string, std::string>> changes = {
-      {"run_id", "0123456789abcdef"}, {"threads", "7"},
-      {"repeat_count", "2"},          {"max_bodies", "6"},
-      {"edge_weight", "pairs"},       {"tau_mix", "0.25"},
-      {"max_growth", "0.5"},          {"as_printed", "1"},
-      {"skip_small_islands", "1"},    {"cold", "1"},
-      {"mode", "lockstep"},           {"steps", "3"},
-      {"schema_version", "other"},    {"contact_cap", "9"},
-      {"gravity_m_per_s2", "9.81"},   {"state_hash", "0"},
-      {"t_collide_ms", "1"},          {"last_body_z_m", "2"}};
+  const std::vector<std::pair<std::string, std::string>> changes = {{"run_id", "0123456789abcdef"},
+                                                                    {"threads", "7"},
+                                                                    {"repeat_count", "2"},
+                                                                    {"max_bodies", "6"},
+                                                                    {"edge_weight", "pairs"},
+                                                                    {"tau_mix", "0.25"},
+                                                                    {"max_growth", "0.5"},
+                                                                    {"as_printed", "1"},
+                                                                    {"skip_small_islands", "1"},
+                                                                    {"cold", "1"},
+                                                                    {"session", "1"},
+                                                                    {"mode", "lockstep"},
+                                                                    {"steps", "3"},
+                                                                    {"schema_version", "other"},
+                                                                    {"contact_cap", "9"},
+                                                                    {"gravity_m_per_s2", "9.81"},
+                                                                    {"state_hash", "0"},
+                                                                    {"t_collide_ms", "1"},
+                                                                    {"last_body_z_m", "2"}};
   for (const auto& [column, value] : changes) {
     fs::copy(*replayed_ / "out/steps.csv", out() / "steps.csv", fs::copy_options::overwrite_existing);
     change_cell(column, value);

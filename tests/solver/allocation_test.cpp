@@ -38,7 +38,7 @@ TEST(AllocationCountTest, IsSwitchedOff) {
 
 class AllocationTest : public testing::TestWithParam<std::string> {
  protected:
-  void second_solve_allocates_nothing(const StepProblem& problem, int threads);
+  void second_solve_allocates_nothing(const StepProblem& problem, int threads, bool session = false);
 };
 
 // Every strategy on every kernel but the oracle, whose matrices are Eigen's.
@@ -53,10 +53,11 @@ std::vector<std::string> solver_names() {
   return names;
 }
 
-void AllocationTest::second_solve_allocates_nothing(const StepProblem& problem, int threads) {
+void AllocationTest::second_solve_allocates_nothing(const StepProblem& problem, int threads, bool session) {
   const std::vector<int> parts = sliced_parts(problem.body_count(), 4);
   SolveOptions options;
   options.threads = threads;
+  options.session = session;
   const auto solver = make_step_solver(GetParam() + "@reuse-analysis=true", options);
   Solution first = cold_start(problem);
   ASSERT_TRUE(is_exact(problem, solver->solve(problem, parts, first), first));
@@ -70,7 +71,8 @@ void AllocationTest::second_solve_allocates_nothing(const StepProblem& problem, 
     summary = solver->solve(problem, parts, second);
     count = allocations.count();
   }
-  EXPECT_EQ(count, 0) << problem.row_count() << " rows, " << threads << " threads";
+  EXPECT_EQ(count, 0) << problem.row_count() << " rows, " << threads << " threads"
+                      << (session ? ", session" : "");
   EXPECT_TRUE(is_exact(problem, summary, second));
 }
 
@@ -82,6 +84,11 @@ TEST_P(AllocationTest, SecondSolveOfOneStructureAllocatesNothing) {
     second_solve_allocates_nothing(make_pile(5, {.columns = 3, .rows = 3, .layers = 3, .cfm = cfm}), threads);
     second_solve_allocates_nothing(make_chain(5, {.links = 30, .extra_joints = 5, .closed = true}), threads);
   }
+}
+
+TEST_P(AllocationTest, SecondSolveOfASessionAllocatesNothing) {
+  if (may_miss(GetParam())) return;
+  second_solve_allocates_nothing(make_pile(5, {.columns = 3, .rows = 3, .layers = 3}), 1, true);
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, AllocationTest, testing::ValuesIn(solver_names()), [](const auto& info) {

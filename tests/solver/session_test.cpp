@@ -1,0 +1,183 @@
+// Solvers that carry their factor from step to step: exact on every step, whatever the factor was of, and it serves
+// where little has changed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/carried_factor.h"
+#include "solver/registry.h"
+#include "tests/solver/problem_makers.h"
+#include "tests/solver/seeded_random.h"
+#include "tests/solver/solver_checks.h"
+
+namespace cleave {
+namespace {
+
+constexpr PileOptions kPile{.columns = 3, .rows = 3, .layers = 3};
+
+// The next step of the same bodies: rows turned and loads changed by so much, from the solution before.
+StepProblem moved(StepProblem problem, const Solution& before, double by, SeededRandom& random) {
+  for (double& value : problem.jacobian) value *= 1 + by * random.uniform(-1, 1);
+  for (double& value : problem.free_velocity) value += by * random.uniform(-1, 1);
+  problem.warm_impulse = before.impulse;
+  return problem;
+}
+
+struct Totals {
+  int factorizations = 0, factor_reuses = 0, cg_iterations = 0;
+  std::vector<double> velocities;  // of all steps
+};
+
+// Every step is judged and compared with a solver that has no history.
+Totals solve_steps(const std::string& solver, const StepProblem& first, double by, int threads) {
+  const auto used = make_step_solver(solver, {.threads = threads, .session = true});
+  const std::vector<int> parts = sliced_parts(first.body_count(), 4);
+  SeededRandom random(5);
+  Totals totals;
+  Solution solution = cold_start(first);
+  for (int step = 0; step < 6; ++step) {
+    const StepProblem problem = step == 0 ? first : moved(first, solution, by, random);
+    solution.impulse = problem.warm_impulse;
+    const SolveSummary summary = used->solve(problem, parts, solution);
+    EXPECT_TRUE(is_exact(problem, summary, solution)) << solver << ", step " << step;
+    Solution fresh = cold_start(problem);
+    EXPECT_TRUE(is_exact(problem, make_step_solver(solver, {})->solve(problem, parts, fresh), fresh));
+    EXPECT_TRUE(velocities_agree(problem, solution.velocity, fresh.velocity, 1e-9))
+        << solver << ", step " << step;
+    totals.factorizations += summary.factorizations;
+    totals.factor_reuses += summary.factor_reuses;
+    totals.cg_iterations += summary.cg_iterations;
+    totals.velocities.insert(totals.velocities.end(), solution.velocity.begin(), solution.velocity.end());
+  }
+  return totals;
+}
+
+class SessionTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(SessionTest, AgreesWithSolversWithoutHistory) {
+  for (const char* strategy : {"pivot", "interior-point"})
+    for (const double by : {1e-9, 1e-3, 0.3})
+      solve_steps(std::string(strategy) + ":" + GetParam(), make_pile(7, kPile), by, 1);
+}
+
+TEST_P(SessionTest, ThreadsDoNotChangeIt) {
+  const std::string solver = std::string("pivot:") + GetParam();
+  const StepProblem chain = make_chain(3, {.links = 60});
+  const Totals one = solve_steps(solver, chain, 1e-6, 1);
+  for (const int threads : {2, 3})
+    EXPECT_EQ(solve_steps(solver, chain, 1e-6, threads).velocities, one.velocities);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kernels, SessionTest,
+                         testing::Values("monolithic", "schur-rows", "schur-bodies", "schur-nested"),
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+// Dear to factor and cheap to apply, so that its factor is carried; where a wrong one is planted, what is carried is
+// that of another matrix: diagonal, with entries of this sign and size.
+class Dear : public Kernel {
+ public:
+  explicit Dear(std::optional<double> planted = {}) : planted_(planted) {}
+  void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override {
+    kernel_->analyze(step, parts, tasks);
+  }
+  bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override {
+    return kernel_->rebind(step, parts, tasks);
+  }
+  bool factor(const RowWeights& weights, ParallelTasks& tasks) override {
+    return kernel_->factor(weights, tasks);
+  }
+  void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
+             std::span<double> dlambda, ParallelTasks& tasks) override {
+    kernel_->solve(f_v, f_r, dv, dlambda, tasks);
+  }
+  double local_mflop() const override { return 1e3; }
+  bool can_be_carried() const override { return true; }
+  double apply_mflop() const override { return 0; }
+  void apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) override {
+    if (!planted_) return kernel_->apply_factor(f, x, tasks);
+    for (std::size_t k = 0; k < f.size(); ++k) x[k] = *planted_ * f[k] * static_cast<double>(1 + k % 7);
+  }
+
+ private:
+  std::unique_ptr<Kernel> kernel_ = make_monolithic_kernel(Settings());
+  std::optional<double> planted_;
+};
+
+// Largest component of H dv - (f_v + J^T D f_r).
+double defect(const PreparedStep& step, const std::vector<double>& d, const std::vector<double>& f_v,
+              const std::vector<double>& f_r, const std::vector<double>& dv) {
+  std::vector<double> rows(f_r.size()), left(f_v.size());
+  step.jacobian_times(dv, rows);
+  for (std::size_t r = 0; r < rows.size(); ++r) rows[r] = d[r] * (rows[r] - f_r[r]);
+  step.add_jacobian_transpose(rows, left);
+  double worst = 0;
+  for (int body = 0; body < step.body_count(); ++body) {
+    for (int i = 0; i < 6; ++i) {
+      double sum = left[6 * body + i] - f_v[6 * body + i];
+      for (int k = 0; k < 6; ++k) sum += step.problem().mass[36 * body + 6 * i + k] * dv[6 * body + k];
+      worst = std::max(worst, std::abs(sum));
+    }
+  }
+  return worst;
+}
+
+class CarriedFactorTest : public testing::Test {
+ protected:
+  CarriedFactorTest() : problem_(make_pile(3, kPile)), tasks_(clock_, 1) {
+    step_.prepare(problem_);
+    d_.assign(problem_.row_count(), 1.0);
+    f_r_.assign(problem_.row_count(), 0.5);
+    f_v_.assign(6 * problem_.body_count(), 1.0);
+    dv_ = f_v_;
+    dlambda_ = f_r_;
+  }
+  // Factors, goes to the next step, and solves with the factor that was carried there.
+  CarriedFactor::Counts solve_carried(std::unique_ptr<Kernel> kernel, double weight_then) {
+    CarriedFactor carried(std::move(kernel));
+    const std::vector<int> parts = single_part(problem_.body_count());
+    carried.begin_step(0);
+    carried.analyze(step_, parts, tasks_);
+    EXPECT_TRUE(carried.factor(d_, tasks_));
+    carried.begin_step(0);
+    EXPECT_TRUE(carried.rebind(step_, parts, tasks_));
+    d_.assign(d_.size(), weight_then);
+    EXPECT_TRUE(carried.factor(d_, tasks_));
+    EXPECT_EQ(carried.counts().factorizations, 0) << "not carried";
+    carried.solve(f_v_, f_r_, dv_, dlambda_, tasks_);
+    return carried.counts();
+  }
+
+  StepProblem problem_;
+  StageClock clock_;
+  ParallelTasks tasks_;
+  PreparedStep step_;
+  std::vector<double> d_, f_v_, f_r_, dv_, dlambda_;
+};
+
+TEST_F(CarriedFactorTest, SolvesTheSystemOfTheStepAtHand) {
+  const auto counts = solve_carried(std::make_unique<Dear>(), 1.5);
+  EXPECT_EQ(counts.factorizations, 0);
+  EXPECT_EQ(counts.factor_reuses, 1);
+  EXPECT_GT(counts.cg_iterations, 1);
+  EXPECT_LT(defect(step_, d_, f_v_, f_r_, dv_), 1e-5);
+}
+
+TEST_F(CarriedFactorTest, IsMadeAnewWhereItIsWrong) {
+  for (const double planted : {-1.0, 0.0, std::numeric_limits<double>::infinity()}) {
+    const auto counts = solve_carried(std::make_unique<Dear>(planted), 1.5);
+    EXPECT_EQ(counts.factorizations, 1) << planted;
+    EXPECT_LT(defect(step_, d_, f_v_, f_r_, dv_), 1e-9) << planted;
+  }
+}
+
+}  // namespace
+}  // namespace cleave
