@@ -28,19 +28,32 @@ void multiply_upper(const double* w, int ld, double* x) {
 
 }  // namespace
 
-void BlockCholesky::analyze(int node_count, std::span<const std::pair<int, int>> edges,
-                            std::span<const int> stage_of_node, int stage_count) {
-  symbolic_.analyze(node_count, edges, stage_of_node, stage_count);
-  panels_.resize(symbolic_.factor_size());
-  updates_.resize(symbolic_.update_size());
-  carry_.resize(symbolic_.carry_size());
-  scratch_offset_.clear();
-  long scratch = 0;
-  for (const Branch& branch : symbolic_.branches()) {
-    scratch_offset_.push_back(scratch);
-    scratch += 6L * branch.most_rows_below;
-  }
-  scratch_.resize(scratch);
+bool BlockCholesky::analyze(int node_count, std::span<const std::pair<int, int>> edges,
+                            std::span<const int> stage_of_node, int stage_count, long most_blocks) {
+  if (!symbolic_.analyze(node_count, edges, stage_of_node, stage_count, most_blocks)) return false;
+  scratch_offset_.assign(1, 0);
+  for (const Branch& branch : symbolic_.branches())
+    scratch_offset_.push_back(scratch_offset_.back() + 6L * branch.most_rows_below);
+  return true;
+}
+
+void BlockCholesky::count(MemoryCount& memory) const {
+  symbolic_.count(memory);
+  memory.add_grown(scratch_offset_);
+  for (const long size :
+       {symbolic_.factor_size(), symbolic_.update_size(), symbolic_.carry_size(), scratch_offset_.back()})
+    memory.add<double>(size);
+}
+
+void BlockCholesky::allocate() {
+  const auto make_room = [](std::vector<double>& array, long size) {
+    free_if_short(array, size);
+    array.resize(size);
+  };
+  make_room(panels_, symbolic_.factor_size());
+  make_room(updates_, symbolic_.update_size());
+  make_room(carry_, symbolic_.carry_size());
+  make_room(scratch_, scratch_offset_.back());
 }
 
 // Its place among the rows of the supernode of its column; -1 outside the pattern.
@@ -138,7 +151,7 @@ void BlockCholesky::forward(int branch_index, double* x) {
   const int *rows = symbolic_.rows().data(), *carry_index = symbolic_.carry_index().data();
   double* carry = carry_.data() + branch.carry_offset;
   std::fill_n(carry, 6 * supernodes[branch.last].rows_below(), 0.0);
-  const auto add = [&](int entry, const double* values) {
+  const auto add = [&](long entry, const double* values) {
     double* into = rows[entry] < branch.end_position ? x + 6L * rows[entry] : carry + 6L * carry_index[entry];
     for (int c = 0; c < 6; ++c) into[c] += values[c];
   };

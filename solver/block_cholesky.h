@@ -24,8 +24,13 @@ class BlockCholesky {
     bool transposed = false;
   };
 
-  void analyze(int node_count, std::span<const std::pair<int, int>> edges,
-               std::span<const int> stage_of_node = {}, int stage_count = 1);
+  // The pattern alone. False where the factor has more than most_blocks (block_symbolic.h).
+  bool analyze(int node_count, std::span<const std::pair<int, int>> edges,
+               std::span<const int> stage_of_node = {}, int stage_count = 1,
+               long most_blocks = BlockSymbolic::kAnyBlocks);
+  // What pattern and factor take; then the factor's memory, without which only place() and holds() may be used.
+  void count(MemoryCount& memory) const;
+  void allocate();
   const BlockSymbolic& symbolic() const { return symbolic_; }
 
   // Of a pair that holds() says is in the pattern of the factor, fill included.
@@ -62,7 +67,7 @@ class BlockCholesky {
   BlockSymbolic symbolic_;
   std::vector<double> panels_, updates_;
   std::vector<double> carry_, scratch_;  // of all branches
-  std::vector<long> scratch_offset_;
+  std::vector<long> scratch_offset_;     // by branch, then their end
 };
 
 }  // namespace cleave

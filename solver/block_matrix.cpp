@@ -19,6 +19,8 @@ void add_block(double* target, int ld, const double* block, int block_ld, bool t
   }
 }
 
+constexpr std::uint64_t kBlockBytes = 36 * sizeof(double);
+
 // A block of a 12x12 Gram matrix, out of it.
 void copy_block(const double* gram, double* block) {
   for (int c = 0; c < 6; ++c) std::copy_n(gram + 12 * c, 6, block + 6 * c);
@@ -33,14 +35,38 @@ void sort_by_branch(std::span<const int> branch_of_item, int branches, std::vect
 
 }  // namespace
 
-void BlockMatrix::analyze(const PreparedStep& step, std::span<const int> bodies,
+bool BlockMatrix::analyze(const PreparedStep& step, std::span<const int> bodies,
                           std::span<const int> local_of_body, std::span<const int> groups,
-                          std::span<const int> stage_of_local, int stage_count) {
+                          std::span<const int> stage_of_local, int stage_count, long most_blocks) {
   bodies_.assign(bodies.begin(), bodies.end());
   list_edges(step, local_of_body, groups);
-  cholesky_.analyze(static_cast<int>(bodies.size()), edges_, stage_of_local, stage_count);
+  analyzed_ =
+      cholesky_.analyze(static_cast<int>(bodies.size()), edges_, stage_of_local, stage_count, most_blocks);
+  if (!analyzed_) return false;
   place_bodies();
   place_groups(step, local_of_body, groups);
+  return true;
+}
+
+long BlockMatrix::most_blocks(std::uint64_t limit_bytes) {
+  return static_cast<long>(limit_bytes / kBlockBytes);
+}
+
+void BlockMatrix::count(MemoryCount& memory) const {
+  if (!analyzed_) return memory.add<double>(36, cholesky_.symbolic().block_count());
+  cholesky_.count(memory);
+  memory.add_grown(bodies_, local_branch_, branch_local_first_, branch_locals_, identity_, entries_,
+                   entry_first_, late_places_, late_branch_, late_first_, late_slots_, group_branch_,
+                   group_order_, edges_);
+  memory.add<double>(36, late_places_.size());
+  memory.add<char>(late_places_.size());
+}
+
+void BlockMatrix::allocate() {
+  cholesky_.allocate();
+  free_if_short(late_blocks_, 36 * late_places_.size());
+  late_blocks_.resize(36 * late_places_.size());
+  late_any_.resize(late_places_.size());
 }
 
 bool BlockMatrix::rebind(const PreparedStep& step, std::span<const int> local_of_body,
@@ -58,11 +84,12 @@ void BlockMatrix::number(const PreparedStep& step) {
   std::iota(identity_.begin(), identity_.end(), 0);
 }
 
-void BlockMatrix::analyze_whole(const PreparedStep& step, std::span<const int> stage_of_body,
-                                int stage_count) {
+bool BlockMatrix::analyze_whole(const PreparedStep& step, std::span<const int> stage_of_body, int stage_count,
+                                long most_blocks) {
   number(step);
   const std::span<const int> all(identity_), bodies = all.first(step.body_count());
-  analyze(step, bodies, bodies, all.first(step.groups().size()), stage_of_body, stage_count);
+  return analyze(step, bodies, bodies, all.first(step.groups().size()), stage_of_body, stage_count,
+                 most_blocks);
 }
 
 bool BlockMatrix::rebind_whole(const PreparedStep& step) {
@@ -126,8 +153,6 @@ void BlockMatrix::place_groups(const PreparedStep& step, std::span<const int> lo
     entries_.push_back(entry);
   }
   sort_by_branch(late_branch_, branch_count(), late_first_, late_slots_);
-  late_blocks_.resize(36 * late_places_.size());
-  late_any_.resize(late_places_.size());
 }
 
 void BlockMatrix::assemble(const WeightedRows& rows, int branch) {

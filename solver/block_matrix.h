@@ -22,17 +22,27 @@ namespace cleave {
 class BlockMatrix {
  public:
   // bodies: the unknowns, by index in the problem; local_of_body[body] = place in `bodies`. groups: indices
-  // into step.groups() with every dynamic body in `bodies`. step must outlive the matrix.
-  void analyze(const PreparedStep& step, std::span<const int> bodies, std::span<const int> local_of_body,
-               std::span<const int> groups, std::span<const int> stage_of_local = {}, int stage_count = 1);
+  // into step.groups() with every dynamic body in `bodies`. step must outlive the matrix. False where the factor has more
+  // than most_blocks (block_symbolic.h); its pattern is then unknown.
+  bool analyze(const PreparedStep& step, std::span<const int> bodies, std::span<const int> local_of_body,
+               std::span<const int> groups, std::span<const int> stage_of_local = {}, int stage_count = 1,
+               long most_blocks = BlockSymbolic::kAnyBlocks);
 
   // For the same bodies, stages and local_of_body, other groups: keeps the analysis where every pair is in
   // its pattern; false, and nothing is changed, where one is not.
   bool rebind(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
 
   // The same with every body and group of a step, by their indices.
-  void analyze_whole(const PreparedStep& step, std::span<const int> stage_of_body = {}, int stage_count = 1);
+  bool analyze_whole(const PreparedStep& step, std::span<const int> stage_of_body, int stage_count,
+                     long most_blocks);
   bool rebind_whole(const PreparedStep& step);
+
+  // What matrix and factor take, once analysed; of one whose analysis ended early, what its blocks take, which is less.
+  void count(MemoryCount& memory) const;
+  // After analysis and rebind: assembly and factorisation want it.
+  void allocate();
+  // Blocks of a factor that takes no more than this.
+  static long most_blocks(std::uint64_t limit_bytes);
 
   // rows: of the whole problem, with their D.
   void assemble(const WeightedRows& rows, int branch);
@@ -62,6 +72,7 @@ class BlockMatrix {
 
   const PreparedStep* step_ = nullptr;
   BlockCholesky cholesky_;
+  bool analyzed_ = false;
   std::vector<int> bodies_;
   std::vector<int> local_branch_, branch_local_first_, branch_locals_;  // places in bodies_ by branch
   std::vector<int> identity_;                      // 0, 1, ...: at least as many as bodies and as groups

@@ -29,21 +29,29 @@ constexpr double kLeastBranchFlops = 1e5;
 
 }  // namespace
 
-void BlockSymbolic::analyze(int node_count, std::span<const std::pair<int, int>> edges,
-                            std::span<const int> stage_of_node, int stage_count) {
+bool BlockSymbolic::analyze(int node_count, std::span<const std::pair<int, int>> edges,
+                            std::span<const int> stage_of_node, int stage_count, long most_blocks) {
   node_count_ = node_count;
   build_adjacency(edges);
   order(stage_of_node);
   find_elimination_tree();
   postorder();
   find_elimination_tree();
-  find_structures();
+  if (!find_structures(most_blocks)) return false;
   find_supernodes(stage_of_node, stage_count);
   list_rows();
   find_branches();
   list_branch_children();
   list_carries();
   place_storage();
+  return true;
+}
+
+void BlockSymbolic::count(MemoryCount& memory) const {
+  memory.add_grown(adjacency_first_, adjacency_, position_of_node_, node_at_position_, parent_, column_first_,
+                   column_rows_, supernodes_, supernode_at_position_, rows_, row_in_parent_, branches_);
+  memory.add_grown(branch_child_first_, branch_children_, carry_index_, child_first_, children_, stage_flops_,
+                   mark_, head_, next_, stack_, true_blocks_, subtree_flops_);
 }
 
 void BlockSymbolic::build_adjacency(std::span<const std::pair<int, int>> edges) {
@@ -144,7 +152,7 @@ void BlockSymbolic::postorder() {
 }
 
 // Structure of a column = its later neighbours and the structures of its children, less itself.
-void BlockSymbolic::find_structures() {
+bool BlockSymbolic::find_structures(long most_blocks) {
   head_.assign(node_count_, -1);  // children lists
   next_.assign(node_count_, -1);
   for (int p = node_count_ - 1; p >= 0; --p) {
@@ -154,6 +162,7 @@ void BlockSymbolic::find_structures() {
     }
   }
   mark_.assign(node_count_, -1);
+  block_count_ = 0;
   column_first_.assign(node_count_ + 1, 0);
   column_rows_.clear();
   for (int p = 0; p < node_count_; ++p) {
@@ -165,11 +174,14 @@ void BlockSymbolic::find_structures() {
     for (int k = adjacency_first_[node]; k < adjacency_first_[node + 1]; ++k)
       add(position_of_node_[adjacency_[k]]);
     for (int child = head_[p]; child != -1; child = next_[child]) {
-      for (int k = column_first_[child]; k < column_first_[child + 1]; ++k) add(column_rows_[k]);
+      for (long k = column_first_[child]; k < column_first_[child + 1]; ++k) add(column_rows_[k]);
     }
     std::sort(column_rows_.begin() + column_first_[p], column_rows_.end());
-    column_first_[p + 1] = static_cast<int>(column_rows_.size());
+    column_first_[p + 1] = static_cast<long>(column_rows_.size());
+    block_count_ = column_first_[p + 1] + p + 1;
+    if (block_count_ > most_blocks) return false;
   }
+  return true;
 }
 
 void BlockSymbolic::find_supernodes(std::span<const int> stage_of_node, int stage_count) {
@@ -177,7 +189,7 @@ void BlockSymbolic::find_supernodes(std::span<const int> stage_of_node, int stag
   true_blocks_.clear();
   stage_flops_.assign(stage_count, 0.0);
   for (int p = 0; p < node_count_; ++p) {
-    const int below = column_first_[p + 1] - column_first_[p];
+    const int below = static_cast<int>(column_first_[p + 1] - column_first_[p]);
     Supernode s;
     s.stage = stage_of_node.empty() ? 0 : stage_of_node[node_at_position_[p]];
     s.first_position = p;
@@ -211,12 +223,12 @@ void BlockSymbolic::list_rows() {
   rows_.clear();
   for (int i = 0; i < count; ++i) {
     Supernode& s = supernodes_[i];
-    s.first_row = static_cast<int>(rows_.size());
+    s.first_row = static_cast<long>(rows_.size());
     const int last = s.first_position + s.width - 1;
     for (int p = s.first_position; p <= last; ++p) rows_.push_back(p), supernode_at_position_[p] = i;
     rows_.insert(rows_.end(), column_rows_.begin() + column_first_[last],
                  column_rows_.begin() + column_first_[last + 1]);
-    s.row_count = static_cast<int>(rows_.size()) - s.first_row;
+    s.row_count = static_cast<int>(static_cast<long>(rows_.size()) - s.first_row);
   }
   row_in_parent_.assign(rows_.size(), -1);
   for (int i = 0; i < count; ++i) {
@@ -299,12 +311,13 @@ void BlockSymbolic::list_carries() {
   carry_size_ = 0;
   for (Branch& branch : branches_) {
     const Supernode& root = supernodes_[branch.last];
-    const int below = root.first_row + root.width;
+    const long below = root.first_row + root.width;
     branch.carry_offset = carry_size_;
     carry_size_ += 6L * root.rows_below();
     for (int i = branch.first; i <= branch.last; ++i) {
       const Supernode& s = supernodes_[i];
-      for (int k = s.first_row + s.width, q = 0; k < s.first_row + s.row_count; ++k) {
+      int q = 0;
+      for (long k = s.first_row + s.width; k < s.first_row + s.row_count; ++k) {
         if (rows_[k] < branch.end_position) continue;
         while (rows_[below + q] != rows_[k]) ++q;
         carry_index_[k] = q;

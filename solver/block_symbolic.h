@@ -15,18 +15,21 @@
 // depend on the pattern alone, so results do not depend on who works on them.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include "solver/memory_count.h"
 
 namespace cleave {
 
 struct Supernode {
   int first_position = 0;  // own columns: positions first_position .. first_position + width - 1
   int width = 0;
-  int first_row = 0;  // rows()[first_row .. first_row + row_count): own columns first, then the rows below
   int row_count = 0;
-  int parent = -1;  // supernode that takes the update matrix; -1 for a root
+  long first_row = 0;  // rows()[first_row .. first_row + row_count): own columns first, then the rows below
+  int parent = -1;     // supernode that takes the update matrix; -1 for a root
   int stage = 0;
   int branch = 0;
   int first_descendant = 0;  // the subtree is supernodes first_descendant .. this one (postorder)
@@ -51,9 +54,11 @@ struct Branch {
 class BlockSymbolic {
  public:
   // edges: pairs of distinct nodes, duplicates allowed. stage_of_node: (n) stages 0..stage_count-1, or empty
-  // for one stage. Throws nothing; buffers are kept for the next analysis.
-  void analyze(int node_count, std::span<const std::pair<int, int>> edges,
-               std::span<const int> stage_of_node = {}, int stage_count = 1);
+  // for one stage. Buffers are kept for the next analysis. False where the factor has more than most_blocks blocks,
+  // padding aside: analysis ends there, and all that is known is block_count().
+  bool analyze(int node_count, std::span<const std::pair<int, int>> edges,
+               std::span<const int> stage_of_node = {}, int stage_count = 1, long most_blocks = kAnyBlocks);
+  static constexpr long kAnyBlocks = std::numeric_limits<long>::max();
 
   int node_count() const { return node_count_; }
   std::span<const int> position_of_node() const { return position_of_node_; }
@@ -79,6 +84,10 @@ class BlockSymbolic {
   std::span<const int> carry_index() const { return carry_index_; }
   int stage_count() const { return static_cast<int>(stage_flops_.size()); }
 
+  // Blocks of the factor, padding aside, diagonal blocks whole; of as many columns as were analysed.
+  long block_count() const { return block_count_; }
+  void count(MemoryCount& memory) const;  // of the analysis itself
+
   long factor_size() const { return factor_size_; }  // doubles of all panels
   long update_size() const { return update_size_; }  // doubles of the update stacks
   long carry_size() const { return carry_size_; }    // doubles of all carries
@@ -90,7 +99,7 @@ class BlockSymbolic {
   void order(std::span<const int> stage_of_node);
   void find_elimination_tree();
   void postorder();
-  void find_structures();
+  bool find_structures(long most_blocks);
   void find_supernodes(std::span<const int> stage_of_node, int stage_count);
   void list_rows();
   void find_branches();
@@ -101,8 +110,9 @@ class BlockSymbolic {
   int node_count_ = 0;
   std::vector<int> adjacency_first_, adjacency_;  // by node, both directions, ascending
   std::vector<int> position_of_node_, node_at_position_;
-  std::vector<int> parent_;                      // elimination tree by position
-  std::vector<int> column_first_, column_rows_;  // structure below the diagonal by position, ascending
+  std::vector<int> parent_;  // elimination tree by position
+  std::vector<long> column_first_;
+  std::vector<int> column_rows_;  // structure below the diagonal by position, ascending
   std::vector<Supernode> supernodes_;
   std::vector<int> supernode_at_position_;
   std::vector<int> rows_, row_in_parent_;
@@ -110,7 +120,7 @@ class BlockSymbolic {
   std::vector<int> branch_child_first_, branch_children_, carry_index_;
   std::vector<int> child_first_, children_;
   std::vector<double> stage_flops_;
-  long factor_size_ = 0, update_size_ = 0, carry_size_ = 0;
+  long block_count_ = 0, factor_size_ = 0, update_size_ = 0, carry_size_ = 0;
   std::vector<int> mark_, head_, next_, stack_;  // scratch
   std::vector<long> true_blocks_;                // scratch: blocks of a supernode that are not padding
   std::vector<double> subtree_flops_;            // scratch: by supernode, padding included

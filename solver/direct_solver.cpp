@@ -84,6 +84,8 @@ class DirectSolver : public StepSolver {
  private:
   std::string refuse_set(const StepProblem& problem) override;
   SolveSummary do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) override;
+  void solve_in_memory(const StepProblem& problem, const Parts& parts, Solution& solution,
+                       SolveSummary& summary);
   void analyze(const StepProblem& problem, const Parts& parts);
   bool attempt(SolveSummary& summary, double delta, std::span<const double> warm_impulse);
   bool run_attempts(SolveSummary& summary, const StepProblem& problem, std::span<const double> warm_impulse);
@@ -226,8 +228,22 @@ bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& proble
   return false;
 }
 
+// What is refused may be so in the middle of a solve: a session analyses when its factor no longer serves.
 SolveSummary DirectSolver::do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) {
   SolveSummary summary;
+  try {
+    solve_in_memory(problem, parts, solution, summary);
+  } catch (const MemoryRefused& refused) {
+    analyzed_ = false;
+    summary.status = SolveStatus::out_of_memory;
+    summary.message = refused.what();
+  }
+  summary.factor_predicted_mb = 1e-6 * static_cast<double>(state_.tasks.memory().needed_bytes());
+  return summary;
+}
+
+void DirectSolver::solve_in_memory(const StepProblem& problem, const Parts& parts, Solution& solution,
+                                   SolveSummary& summary) {
   summary.kernel = kernel_name_;
   clock_.start();
   {
@@ -265,7 +281,6 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, const Parts& par
   summary.factor_mflop_local = kernel_->local_mflop();
   summary.factor_mflop_interface = kernel_->interface_mflop();
   summary.times = clock_.stop();
-  return summary;
 }
 
 }  // namespace

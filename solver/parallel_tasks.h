@@ -8,6 +8,7 @@
 #include <chrono>
 #include <vector>
 
+#include "solver/memory_count.h"
 #include "solver/stage_clock.h"
 #include "solver/stop.h"
 #include "solver/worker_team.h"
@@ -20,8 +21,9 @@ void start_threads(int threads);
 
 class ParallelTasks {
  public:
-  ParallelTasks(StageClock& clock, int threads, const std::atomic<bool>* stop = nullptr)
-      : clock_(clock), team_(WorkerTeam::shared(threads)), stop_(stop) {}
+  ParallelTasks(StageClock& clock, int threads, const std::atomic<bool>* stop = nullptr,
+                std::uint64_t memory_limit_bytes = kNoMemoryLimit)
+      : clock_(clock), team_(WorkerTeam::shared(threads)), stop_(stop), memory_(memory_limit_bytes) {}
 
   // Tasks are started in ascending order; one may wait for an earlier one.
   template <class Task>
@@ -58,6 +60,7 @@ class ParallelTasks {
   StageClock& clock() { return clock_; }
   int threads() const { return team_.threads(); }
   const std::atomic<bool>* stop() const { return stop_; }  // of the solve
+  MemoryBudget& memory() { return memory_; }               // of the solve
 
  private:
   template <class Task>
@@ -84,6 +87,7 @@ class ParallelTasks {
   StageClock& clock_;
   WorkerTeam& team_;
   const std::atomic<bool>* stop_;
+  MemoryBudget memory_;
   std::vector<double> task_ms_;
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/memory_count.h"
 #include "solver/parts.h"
 #include "solver/prepared_step.h"
 
@@ -23,6 +24,10 @@ class Separators {
   std::span<const int> node_of_body() const { return node_of_body_; }
   int node_count() const { return node_count_; }
   int part_count() const { return part_count_; }  // nodes 0 .. part_count() - 1
+  void count(MemoryCount& memory) const {
+    memory.add_grown(node_of_body_, parent_, depth_, edges_, node_of_edge_, edge_first_, edge_order_,
+                     local_edges_, local_of_body_, bodies_);
+  }
 
  private:
   void read_tree(const Parts& parts);

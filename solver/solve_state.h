@@ -37,7 +37,8 @@ struct Settling {
 
 struct SolveState {
   SolveState(const DirectOptions& solve_options, StageClock& clock)
-      : options(solve_options), tasks(clock, solve_options.threads, solve_options.stop) {}
+      : options(solve_options),
+        tasks(clock, solve_options.threads, solve_options.stop, solve_options.memory_limit_bytes) {}
 
   // Binds the state to a problem; impulses start from the warm start (along the axes), moved into the set.
   void begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,

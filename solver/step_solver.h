@@ -4,6 +4,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -38,6 +40,8 @@ struct SolveOptions {
   // back-substitution, sweep or block column of a dense interface. Must outlive the solver.
   const std::atomic<bool>* stop = nullptr;
   DispatchCost dispatch = {};  // that the model of a one-thread solve charges
+  // Of the factor and its workspace: what was predicted to need more is out_of_memory before any of it is allocated.
+  std::uint64_t memory_limit_bytes = std::numeric_limits<std::uint64_t>::max();
 };
 
 struct SolveSummary {
@@ -56,6 +60,8 @@ struct SolveSummary {
   int interface_unknowns = 0;     // size of the interface system (rows, or 6 x bodies for schur-bodies)
   double factor_mflop_local = 0;  // per factorisation, without padding, subsystem interiors
   double factor_mflop_interface = 0;
+  // Of the factor and its workspace, 1e6 bytes, before it was allocated; NaN where nothing is factored.
+  double factor_predicted_mb = std::numeric_limits<double>::quiet_NaN();
   StageTimes times;  // ms by named stage, total, and the modelled makespans
 };
 

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "solver/memory_count.h"
+
 namespace cleave {
 
 class TaskGraph {
@@ -29,6 +31,7 @@ class TaskGraph {
   std::span<const int> next(int task) const {
     return std::span(next_).subspan(next_first_[task], next_first_[task + 1] - next_first_[task]);
   }
+  void count(MemoryCount& memory) const { memory.add_grown(wait_count_, next_first_, next_, places_); }
 
  private:
   std::vector<int> wait_count_, next_first_, next_;

@@ -75,7 +75,8 @@ WorkDescription describe_work(const std::string& command, const std::vector<std:
           .steps_schema = kStepsSchema,
           .columns = columns(),
           .files = files,
-          .libraries = {{"ode", ode_version()}}};
+          .libraries = {{"ode", ode_version()}},
+          .memory_limit_gb = 1e-9 * static_cast<double>(options.memory_limit_bytes)};
 }
 
 void print_left_out(const RunOptions& options) {

@@ -97,8 +97,11 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
     : name_{.solver = solver.text},
       solver_named_(solver),
       repeats_(options.repeats),
-      solve_options_{
-          .threads = options.threads, .session = options.session, .stop = stop, .dispatch = dispatch_cost()},
+      solve_options_{.threads = options.threads,
+                     .session = options.session,
+                     .stop = stop,
+                     .dispatch = dispatch_cost(),
+                     .memory_limit_bytes = options.memory_limit_bytes},
       context_(&context),
       solver_(make_solver(solver, solve_options_, context)) {
   if (solver_->uses_partition()) {

@@ -9,6 +9,7 @@
 #include "harness/base/hash.h"
 #include "harness/base/names.h"
 #include "harness/experiment/friction.h"
+#include "harness/experiment/memory_limit.h"
 #include "harness/world/ode_baselines.h"
 #include "solver/registry.h"
 
@@ -200,6 +201,7 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given,
     reject("measure-every", std::to_string(options.measure_every) + " measures none of --steps " +
                                 std::to_string(options.steps) + ", allowed: 1 to " +
                                 std::to_string(options.steps));
+  options.memory_limit_bytes = memory_limit_bytes(options.memory_limit_gb);
   return options;
 }
 
@@ -215,6 +217,7 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
     if (std::ranges::count(options.solvers, ode.name, &Algorithm::name) > 0)
       reject("solver",
              std::string(ode.name) + " is ODE's own and needs the world of a run; a problem file holds none");
+  options.memory_limit_bytes = memory_limit_bytes(options.memory_limit_gb);
   return options;
 }
 

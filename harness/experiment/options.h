@@ -37,6 +37,8 @@ struct RunOptions {
   int repeats = 3;
   bool session = false;  // solvers carry what pays from step to step; each cell is then solved once
   int threads = 1;
+  double memory_limit_gb = std::numeric_limits<double>::quiet_NaN();             // NaN: what the machine has
+  std::uint64_t memory_limit_bytes = std::numeric_limits<std::uint64_t>::max();  // what that is
   std::uint64_t seed = 1;
   std::string out;
   bool force = false;

@@ -160,6 +160,10 @@ std::vector<OptionSpec> experiment_options() {
            at(&RunOptions::session)),
       integer({"threads", kAbout, kEverywhere, kChangesNoRow}, {1, 1024}, "threads of a solve",
               at(&RunOptions::threads)),
+      number({"memory-limit", kAbout, kEverywhere, kChangesNoRow}, kPositive,
+             "most memory of a factorisation, GB (1e9 bytes): one predicted to need more is out_of_memory; "
+             "where not given, nine tenths of what the machine has available",
+             at(&RunOptions::memory_limit_gb)),
       seed(),
       text({"out", kAbout, kEverywhere, kChangesNoRow}, "DIR", "directory for steps.csv and manifest.json",
            at(&RunOptions::out)),

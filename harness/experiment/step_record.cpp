@@ -79,6 +79,7 @@ void StepRecord::set_summary(const SolveSummary& summary) {
   if (!summary.strategy.empty()) strategy = summary.strategy;
   if (!summary.kernel.empty()) kernel = summary.kernel;
   auto_reason = summary.auto_reason;
+  factor_predicted_mb = summary.factor_predicted_mb;
   if (!has_result(summary.status)) return;
   interface_unknowns = summary.interface_unknowns;
   factor_mflop_local = summary.factor_mflop_local;

@@ -108,6 +108,7 @@ struct StepRecord {
   int steps = -1;
   std::string scene_options = "-";
   std::string schema_version = kStepsSchema;
+  double factor_predicted_mb = kUnmeasured;
 
   std::string parameter(const std::string& column) const {
     const auto found = parameters.find(column);
@@ -282,6 +283,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   for (std::size_t i = kFirstModels; i < kModelWorkers.size(); ++i) visit_model(i);
   visit_machine("t_s_critical_path_ms", r.t_s_critical_path_ms,
                 "solve modelled on as many workers as there are tasks");
+  visit("factor_predicted_mb", r.factor_predicted_mb,
+        "memory of a factor and its workspace as predicted before the factorisation, 1e6 bytes");
 }
 
 // "run_id,scene,...\n"

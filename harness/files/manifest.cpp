@@ -186,6 +186,7 @@ void Manifest::write(const std::string& state, const WorkResult* result, const s
   add_algorithms(json, description_.algorithms);
   if (result != nullptr) add_result(json, *result);
   add_build(json, description_.libraries);
+  json.field("memory_limit_gb", description_.memory_limit_gb);
   add_machine(json, machine_, result != nullptr ? &load_average_end_ : nullptr);
   json.field("steps_schema", description_.steps_schema);
   add_columns(json, description_.columns);

@@ -31,6 +31,7 @@ struct WorkDescription {
   std::vector<Column> columns;
   std::vector<std::string> files;  // that the command may leave beside manifest and checksums
   std::vector<std::pair<std::string, std::string>> libraries;  // beside those of build_info.h
+  double memory_limit_gb = 0;  // of a factorisation, 1e9 bytes; given or found
 };
 
 // What came out.

@@ -22,15 +22,35 @@ void BranchKernel::analyze(const PreparedStep& step, const Parts& parts, Paralle
   choose_stages(step, parts, stages_);
   interface_bodies_ = static_cast<int>(
       std::ranges::count_if(stages_.of_body, [this](int s) { return s >= stages_.first_of_interface; }));
-  matrix_.analyze_whole(step, stages_.of_body, stages_.count);
+  const bool analyzed = matrix_.analyze_whole(step, stages_.of_body, stages_.count,
+                                              BlockMatrix::most_blocks(tasks.memory().limit_bytes()));
+  if (analyzed) list_tasks();
+  request_memory(step, tasks, analyzed);
+  matrix_.allocate();
   bind(step);
-  list_tasks();
+}
+
+void BranchKernel::request_memory(const PreparedStep& step, ParallelTasks& tasks, bool analyzed) {
+  MemoryCount memory;
+  matrix_.count(memory);
+  separators_.count(memory);
+  for (const TaskGraph* graph :
+       {&assembly_graph_, &local_graph_, &interface_graph_, &forward_graph_, &backward_graph_})
+    graph->count(memory);
+  memory.add_grown(stages_.of_body, local_branches_, interface_branches_, waits_, task_of_branch_, places_,
+                   factored_);
+  memory.add<double>(12, step.groups().size());
+  memory.add<double>(6, step.body_count());
+  if (!step.set().axes().empty()) memory.add<double>(12, step.row_count());
+  tasks.memory().request(memory, analyzed);
 }
 
 bool BranchKernel::rebind(const PreparedStep& step, const Parts&, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
   if (!matrix_.rebind_whole(step)) return false;
   bind(step);
+  request_memory(step, tasks, true);
+  matrix_.allocate();
   return true;
 }
 

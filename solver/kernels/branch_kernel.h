@@ -47,6 +47,7 @@ class BranchKernel : public Kernel {
  private:
   void bind(const PreparedStep& step);
   void list_tasks();
+  void request_memory(const PreparedStep& step, ParallelTasks& tasks, bool analyzed);
   void substitute(ParallelTasks& tasks);
 
   const PreparedStep* step_ = nullptr;

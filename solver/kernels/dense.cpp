@@ -15,6 +15,7 @@ class DenseKernel : public Kernel {
  public:
   void analyze(const PreparedStep& step, const Parts&, ParallelTasks& tasks) override {
     StageTimer timer(tasks.clock(), Stage::analyze);
+    request_memory(step, tasks);
     step_ = &step;
     if (mass_.rows() != 6 * step.body_count() || jacobian_.rows() != step.row_count()) release();
   }
@@ -68,6 +69,19 @@ class DenseKernel : public Kernel {
     d_ = scalar_d_ = Eigen::VectorXd();
     factor_.emplace();
   }
+
+  // M, H and its factor; J and J^T D. What products copy besides is as high as the matrix and of fixed width.
+  static void request_memory(const PreparedStep& step, ParallelTasks& tasks) {
+    const auto unknowns = 6 * static_cast<std::uint64_t>(step.body_count()),
+               rows = static_cast<std::uint64_t>(step.row_count());
+    MemoryCount memory;
+    memory.add<double>(3 * unknowns, unknowns);
+    memory.add<double>(2 * unknowns, rows);
+    memory.add<double>(kProductColumns, unknowns);
+    memory.add<double>(4, unknowns + rows);
+    tasks.memory().request(memory);
+  }
+  static constexpr int kProductColumns = 256;
 
   using Basis = Eigen::Map<const Eigen::MatrixXd>;
   static Basis basis_of(const WeightBlock& block) {

@@ -24,7 +24,8 @@ class Kernel {
   virtual ~Kernel() = default;
 
   // Symbolic analysis of the pattern; step must outlive the kernel's use. parts: unused by
-  // kernels that do not split.
+  // kernels that do not split. What factor and workspace will take, with D > 0 on every row, is requested of
+  // tasks.memory() before it is allocated: throws MemoryRefused, here and in rebind.
   virtual void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) = 0;
 
   // Instead of analyze, for the bodies and parts analysed last but other rows: true where every pair of

@@ -26,6 +26,12 @@ namespace {
 
 int round_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
 
+// An array of zeros whose old values are of no interest.
+void zeros(std::vector<double>& array, std::size_t size) {
+  free_if_short(array, size);
+  array.assign(size, 0.0);
+}
+
 // Everything one part owns; its tasks write nothing else.
 struct Part {
   BlockMatrix matrix;
@@ -40,7 +46,7 @@ struct Part {
   std::vector<double> coupling;    // -Y^T L^-1 g (ld), later -lambda_c
   std::vector<double> by_body;
   int ld = 0;
-  bool factored = false;
+  bool analyzed = false, factored = false;
 };
 
 class SchurRowsKernel : public Kernel {
@@ -56,6 +62,9 @@ class SchurRowsKernel : public Kernel {
 
  private:
   void split(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks);
+  void count_interface(MemoryCount& memory) const;
+  void request_memory(ParallelTasks& tasks);
+  void analyze_part(int part, std::uint64_t limit_bytes);
   void order_cut_rows(int part);
   void number_active_rows();
   void choose_active(int part);
@@ -80,29 +89,75 @@ void SchurRowsKernel::split(const PreparedStep& step, const Parts& parts, Parall
   StageTimer timer(tasks.clock(), Stage::analyze);
   step_ = &step;
   split_.split(step, parts.part_of_body);
+  // An interface that is too large is known before anything of the parts is.
+  MemoryCount memory;
+  count_interface(memory);
+  tasks.memory().request(memory, false);
   if (static_cast<int>(parts_.size()) < split_.part_count) parts_.resize(split_.part_count);
   interface_row_.resize(split_.cut_rows.size());
 }
 
+// With every cut row in the interface.
+void SchurRowsKernel::count_interface(MemoryCount& memory) const {
+  const std::size_t cut_rows = split_.cut_rows.size();
+  DenseCholesky::count(static_cast<int>(cut_rows), memory);
+  memory.add<double>(cut_rows);  // lambda
+  memory.add<int>(6, cut_rows);  // where each row is
+  memory.add_grown(split_.local_of_body, split_.cut_groups, split_.cut_rows);
+  if (!step_->set().axes().empty()) memory.add<double>(12, step_->row_count());
+  for (int i = 0; i < split_.part_count; ++i) {
+    const PartRows& rows = split_.parts[i];
+    memory.add_grown(rows.bodies, rows.groups, rows.cut_rows, rows.cut_side);
+    const std::uint64_t sides = round_up(static_cast<int>(rows.cut_rows.size()), 6);
+    memory.add<double>(6 * sides, rows.bodies.size());  // Y
+    memory.add<double>(sides, sides);                   // its Gram matrix
+    memory.add<double>(sides);                          // coupling
+    memory.add<int>(5, sides);                          // order, and twice what is active and where
+    memory.add<double>(12, rows.bodies.size());         // velocity, by position and by body
+    memory.add<int>(3, rows.bodies.size() + 1);         // at most a supernode a body
+  }
+}
+
+// With the parts, once they are analysed.
+void SchurRowsKernel::request_memory(ParallelTasks& tasks) {
+  MemoryCount memory;
+  count_interface(memory);
+  memory.add_grown(parts_);
+  bool counted_all = true;
+  for (int i = 0; i < split_.part_count; ++i) {
+    parts_[i].matrix.count(memory);
+    counted_all &= parts_[i].analyzed;
+  }
+  tasks.memory().request(memory, counted_all);
+}
+
 void SchurRowsKernel::analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
   split(step, parts, tasks);
-  tasks.run(Stage::analyze, split_.part_count, [&](int i) {
-    const PartRows& rows = split_.parts[i];
-    parts_[i].matrix.analyze(step, rows.bodies, split_.local_of_body, rows.groups);
-    order_cut_rows(i);
-  });
+  tasks.run(Stage::analyze, split_.part_count, [&](int i) { analyze_part(i, tasks.memory().limit_bytes()); });
+  request_memory(tasks);
+  tasks.run(Stage::analyze, split_.part_count, [&](int i) { parts_[i].matrix.allocate(); });
+}
+
+void SchurRowsKernel::analyze_part(int i, std::uint64_t limit_bytes) {
+  const PartRows& rows = split_.parts[i];
+  Part& part = parts_[i];
+  part.analyzed = part.matrix.analyze(*step_, rows.bodies, split_.local_of_body, rows.groups, {}, 1,
+                                      BlockMatrix::most_blocks(limit_bytes));
+  if (part.analyzed) order_cut_rows(i);
 }
 
 // Every part decides for itself.
 bool SchurRowsKernel::rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
   split(step, parts, tasks);
   tasks.run(Stage::analyze, split_.part_count, [&](int i) {
-    const PartRows& rows = split_.parts[i];
-    if (!parts_[i].matrix.rebind(step, split_.local_of_body, rows.groups)) {
-      parts_[i].matrix.analyze(step, rows.bodies, split_.local_of_body, rows.groups);
+    if (parts_[i].matrix.rebind(step, split_.local_of_body, split_.parts[i].groups)) {
+      order_cut_rows(i);
+    } else {
+      analyze_part(i, tasks.memory().limit_bytes());
     }
-    order_cut_rows(i);
   });
+  request_memory(tasks);
+  tasks.run(Stage::analyze, split_.part_count, [&](int i) { parts_[i].matrix.allocate(); });
   return true;
 }
 
@@ -169,16 +224,16 @@ void SchurRowsKernel::form_complement(int i) {
   Part& part = parts_[i];
   const PartRows& rows = split_.parts[i];
   const BlockSymbolic& symbolic = part.matrix.cholesky().symbolic();
-  part.y.assign(static_cast<std::size_t>(part.ld) * 6 * rows.bodies.size(), 0.0);
+  zeros(part.y, static_cast<std::size_t>(part.ld) * 6 * rows.bodies.size());
   for (std::size_t k = 0; k < part.active.size(); ++k) {
     const int row = split_.cut_rows[rows.cut_rows[part.active[k]]], side = rows.cut_side[part.active[k]];
     const int body = step_->problem().row_body[2 * row + side];
     const long position = symbolic.position_of_node()[split_.local_of_body[body]];
-    const double* j = rows_.jacobian() + 12 * row + 6 * side;
+    const double* j = rows_.jacobian() + 12L * row + 6 * side;
     for (int c = 0; c < 6; ++c) part.y[k + (6 * position + c) * part.ld] = j[c];
   }
   part.matrix.cholesky().forward_many(part.y.data(), part.ld, part.first, part.last);
-  part.minus_gram.assign(static_cast<std::size_t>(part.ld) * part.ld, 0.0);
+  zeros(part.minus_gram, static_cast<std::size_t>(part.ld) * part.ld);
   for (std::size_t s = 0; s < symbolic.supernodes().size(); ++s) {
     const Supernode& node = symbolic.supernodes()[s];
     const double* columns = part.y.data() + 6L * node.first_position * part.ld;
@@ -288,7 +343,7 @@ void SchurRowsKernel::expand(int i, std::span<const double> f_r, std::span<doubl
   for (int g : rows.groups) {
     const RowGroup& group = step_->groups()[g];
     for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
-      const double* j = jacobian + 12 * r;
+      const double* j = jacobian + 12L * r;
       double jv = 0;
       for (int c = 0; c < 6; ++c) jv += j[c] * dv[6 * group.body_a + c];
       for (int c = 0; c < 6 && group.body_b >= 0; ++c) jv += j[6 + c] * dv[6 * group.body_b + c];

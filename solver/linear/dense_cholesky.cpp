@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/linear/dense_panel.h"
 #include "solver/linear/small_cholesky.h"
@@ -60,6 +61,20 @@ void DenseCholesky::resize(int size) {
     entries_.reset(new (std::align_val_t(64)) double[offset(panels_)]);
     capacity_ = offset(panels_);
   }
+}
+
+// A schedule has an operation for every three blocks row >= column >= step; it waits for at most three others. Both lists
+// grow as they are filled. Beyond what an int numbers there is no schedule, whatever memory there is.
+void DenseCholesky::count(int size, MemoryCount& memory) {
+  const long panels = (size + long{kPanelRows} - 1) / kPanelRows;
+  const auto blocks = static_cast<std::uint64_t>((panels + kBlockPanels - 1) / kBlockPanels);
+  memory.add<double>(offset(panels));
+  memory.add<double>(kPanelRows, panels);
+  const std::uint64_t operations = blocks * (blocks + 1) * (blocks + 2) / 6;
+  if (operations > std::numeric_limits<int>::max() / 3) return memory.add<char>(kNoMemoryLimit);
+  constexpr std::uint64_t kOperationBytes = 2 * sizeof(Operation) + 2 * 3 * sizeof(std::pair<int, int>) +
+                                            2 * sizeof(double) + 2 * 6 * sizeof(int) + 2 * sizeof(double);
+  memory.add<char>(operations, kOperationBytes);
 }
 
 double* DenseCholesky::begin_panel(int p) {

@@ -30,6 +30,8 @@ class DenseCholesky {
  public:
   // A matrix of this size, to be filled panel by panel. Memory only grows.
   void resize(int size);
+  // What resize and factor allocate for this size.
+  static void count(int size, MemoryCount& memory);
   int size() const { return size_; }
   int panel_count() const { return panels_; }
 
@@ -61,7 +63,9 @@ class DenseCholesky {
     void operator()(double* p) const { ::operator delete[](p, std::align_val_t(64)); }
   };
   double* panel(int p) const { return entries_.get() + offset(p); }
-  static std::size_t offset(int p) { return std::size_t{kPanelRows * kPanelRows / 2} * p * (p + 1); }
+  static std::size_t offset(long p) {
+    return std::size_t{kPanelRows * kPanelRows / 2} * static_cast<std::size_t>(p * (p + 1));
+  }
 
   // What a step does to one block. A diagonal block is factored, those below it are solved for, all others
   // are updated.

@@ -69,10 +69,8 @@ void expect_exact(const Finished& run, std::size_t rows) {
 
 TEST(Smoke, EverySceneRunsSmallWithAllCombinations) {
   const std::map<std::string, Arguments> small = {
-      {"chain_drop", {"--links", "12"}},
-      {"log_tower", {"--layers", "4", "--logs", "2"}},
-      {"rock_pile", {"--bodies", "12"}},
-      {"large_rock_pile", {"--bodies", "12"}},
+      {"chain_drop", {"--links", "12"}}, {"log_tower", {"--layers", "4", "--logs", "2"}},
+      {"rock_pile", {"--bodies", "12"}}, {"large_rock_pile", {"--bodies", "12"}},
       {"silo", {"--bodies", "12"}},
   };
   for (const ShippedScene& scene : shipped_scenes()) {
@@ -215,7 +213,7 @@ TEST(Run, ASolveWithoutMemoryIsARowThatMeasuredNothing) {
   const std::string out = directory / "out";
   const std::string command = std::string("ulimit -v 800000; OPENBLAS_NUM_THREADS=1 exec ") + CLEAVE_PROGRAM +
                               " run --scene rock_pile --bodies 2000 --steps 1 --solver dense" +
-                              " --advance monolithic --out " + out;
+                              " --advance monolithic --memory-limit 100 --out " + out;
   const ProgramResult result = run_program("/bin/bash", {"-c", command});
   EXPECT_EQ(result.exit_code, 2) << result.err;
   const CsvTable table = read_csv(directory / "out/steps.csv");

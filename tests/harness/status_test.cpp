@@ -25,7 +25,7 @@ const std::map<std::string, Files> kGivers = {
      {"solver/direct_solver.cpp", "solver/baselines/iterative_baseline.cpp",
       "harness/experiment/combination.cpp"}},
     {"timeout", {}},  // reserved: a run has no limit of time yet
-    {"out_of_memory", {"harness/experiment/combination.cpp"}},
+    {"out_of_memory", {"solver/direct_solver.cpp", "harness/experiment/combination.cpp"}},
     {"diverged", {"solver/direct_solver.cpp", "harness/experiment/combination.cpp"}},
     {"refused",
      {"solver/step_solver.cpp", "harness/world/ode_baselines.cpp", "harness/experiment/combination.cpp"}},
