@@ -256,8 +256,6 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit_machine("peak_memory_mb", r.peak_memory_mb, "largest resident set of the process so far, 1e6 bytes");
   visit("residual_relative", r.residual_relative,
         "residual_m_per_s over the largest entry of v0, J v0 and b, in the problem's own units");
-  visit("factor_reuses", r.factor_reuses, "systems solved with the factor of another, in a session");
-  visit("cg_iterations", r.cg_iterations, "iterations of conjugate gradients with such a factor");
   visit("dt_s", r.dt_s, "step h", About::problem);
   visit("cfm", r.cfm, "constraint force mixing; compliance C = cfm / h", About::problem);
   visit("erp", r.erp, "share of a position error removed per step", About::problem);
@@ -273,8 +271,6 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         About::partition);
   visit("cold", r.cold, "1 where solves start from zero impulses, 0 where from those of the last step",
         About::problem);
-  visit("session", r.session, "1 where a solver carries what it can from step to step, else 0",
-        About::solver);
   visit("mode", r.mode, "lockstep or separate worlds", About::problem);
   visit("advance", r.advance, "solver that advances the world in lockstep", About::problem);
   visit("steps", r.steps, "steps that were to be simulated", About::bookkeeping);
@@ -285,6 +281,10 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
                 "solve modelled on as many workers as there are tasks");
   visit("factor_predicted_mb", r.factor_predicted_mb,
         "memory of a factor and its workspace as predicted before the factorisation, 1e6 bytes");
+  visit("session", r.session, "1 where a solver carries what it can from step to step, else 0",
+        About::solver);
+  visit("factor_reuses", r.factor_reuses, "systems solved with the factor of another, in a session");
+  visit("cg_iterations", r.cg_iterations, "iterations of conjugate gradients with such a factor");
 }
 
 // "run_id,scene,...\n"

@@ -48,7 +48,8 @@ TEST(Csv, HeaderStartsWithTheContract) {
 // New columns come after those of earlier tables.
 TEST(Csv, LaterColumnsStandAtTheEnd) {
   EXPECT_TRUE(csv_header().ends_with(
-      ",schema_version,t_s_model_p32_ms,t_s_model_p64_ms,t_s_critical_path_ms,factor_predicted_mb\n"));
+      ",schema_version,t_s_model_p32_ms,t_s_model_p64_ms,t_s_critical_path_ms,factor_predicted_mb,"
+      "session,factor_reuses,cg_iterations\n"));
 }
 
 TEST(Csv, HeaderRowAndColumnListAgree) {
