@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace cleave {
 namespace {
@@ -90,36 +91,38 @@ void CarriedFactor::solve(std::span<const double> f_v, std::span<const double> f
                           std::span<double> dlambda, ParallelTasks& tasks) {
   if (is_own_) return kernel_->solve(f_v, f_r, dv, dlambda, tasks);
   StageTimer timer(tasks.clock(), Stage::solve);
-  const auto groups = step_->group_chunks(), bodies = step_->body_chunks();
-  const int group_tasks = static_cast<int>(groups.size()), body_tasks = static_cast<int>(bodies.size());
+  const auto groups = step_->group_chunks();
   residual_.resize(f_v.size());
-  tasks.run(group_tasks, [&](int i) { system_.weigh(groups[i], f_r); });
-  tasks.run(body_tasks, [&](int i) { system_.collect(bodies[i], f_v, residual_); });
+  tasks.run_over(groups, [&](const Chunk& chunk) { system_.weigh(chunk, f_r); });
+  tasks.run_over(step_->body_chunks(), [&](const Chunk& chunk) { system_.collect(chunk, f_v, residual_); });
   const int most = kIterationsAnyway + static_cast<int>(anew_mflop() / iteration_mflop());
   if (!iterate(most, tasks) && factor_anew(tasks)) return kernel_->solve(f_v, f_r, dv, dlambda, tasks);
-  tasks.run(group_tasks, [&](int i) { system_.expand(groups[i], x_, f_r, dlambda); });
+  tasks.run_over(groups, [&](const Chunk& chunk) { system_.expand(chunk, x_, f_r, dlambda); });
   std::ranges::copy(x_, dv.begin());
 }
 
-// Of the terms of all bodies' components, chunk by chunk, so that threads do not change it.
-template <class Term>
-double CarriedFactor::sum(ParallelTasks& tasks, const Term& term) {
-  const auto bodies = step_->body_chunks();
-  chunk_sums_.assign(bodies.size(), 0.0);
-  tasks.run(static_cast<int>(bodies.size()), [&](int i) {
-    double total = 0;
-    for (int k = 6 * bodies[i].first; k < 6 * bodies[i].last; ++k) total += term(k);
-    chunk_sums_[i] = total;
+// action(c) of every component c of a vector over bodies.
+template <class Action>
+void CarriedFactor::over_components(ParallelTasks& tasks, const Action& action) {
+  tasks.run_over(step_->body_chunks(), [&](const Chunk& bodies) {
+    for (int c = 6 * bodies.first; c < 6 * bodies.last; ++c) action(c);
   });
-  double total = 0;
-  for (const double part : chunk_sums_) total += part;
-  return total;
 }
 
-// Solves H x = residual_. False when the factor is no positive definite one, or when that takes more than so many iterations.
+// Summed chunk by chunk, so that threads do not change it.
+double CarriedFactor::dot(std::span<const double> a, std::span<const double> b, ParallelTasks& tasks) {
+  const auto bodies = step_->body_chunks();
+  chunk_sums_.resize(bodies.size());
+  tasks.run(static_cast<int>(bodies.size()), [&](int i) {
+    const int first = 6 * bodies[i].first, last = 6 * bodies[i].last;
+    chunk_sums_[i] = std::inner_product(a.begin() + first, a.begin() + last, b.begin() + first, 0.0);
+  });
+  return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
+}
+
+// Solves H x = residual_. False when the factor is no positive definite one, or when that takes more than so many
+// iterations.
 bool CarriedFactor::iterate(int most, ParallelTasks& tasks) {
-  const auto groups = step_->group_chunks(), bodies = step_->body_chunks();
-  const int group_tasks = static_cast<int>(groups.size()), body_tasks = static_cast<int>(bodies.size());
   x_.assign(residual_.size(), 0.0);
   image_.resize(residual_.size());
   direction_.assign(residual_.size(), 0.0);
@@ -127,7 +130,7 @@ bool CarriedFactor::iterate(int most, ParallelTasks& tasks) {
   for (int k = 0;; ++k) {
     check_stop(tasks.stop());
     kernel_->apply_factor(residual_, image_, tasks);
-    const double norm = sum(tasks, [&](int c) { return image_[c] * residual_[c]; });
+    const double norm = dot(image_, residual_, tasks);
     if (k == 0) first = norm;
     const bool is_small = norm >= 0 && norm <= kCarriedAccuracy * kCarriedAccuracy * first;
     if (is_small && std::isfinite(first) && (k > 0 || is_zero(residual_))) return true;
@@ -135,13 +138,15 @@ bool CarriedFactor::iterate(int most, ParallelTasks& tasks) {
     ++counts_.cg_iterations;
     const double turn = k == 0 ? 0 : norm / last;
     last = norm;
-    sum(tasks, [&](int c) { return direction_[c] = image_[c] + turn * direction_[c]; });
-    tasks.run(group_tasks, [&](int i) { system_.weigh_product(groups[i], direction_); });
-    tasks.run(body_tasks, [&](int i) { system_.collect_product(bodies[i], direction_, image_); });
-    const double length = norm / sum(tasks, [&](int c) { return image_[c] * direction_[c]; });
-    sum(tasks, [&](int c) {
+    over_components(tasks, [&](int c) { direction_[c] = image_[c] + turn * direction_[c]; });
+    tasks.run_over(step_->group_chunks(),
+                   [&](const Chunk& chunk) { system_.weigh_product(chunk, direction_); });
+    tasks.run_over(step_->body_chunks(),
+                   [&](const Chunk& chunk) { system_.collect_product(chunk, direction_, image_); });
+    const double length = norm / dot(image_, direction_, tasks);
+    over_components(tasks, [&](int c) {
       x_[c] += length * direction_[c];
-      return residual_[c] -= length * image_[c];
+      residual_[c] -= length * image_[c];
     });
   }
 }

@@ -56,8 +56,9 @@ class CarriedFactor : public Kernel {
   double iteration_mflop() const;
   double anew_mflop() const;
   bool iterate(int most, ParallelTasks& tasks);
-  template <class Term>
-  double sum(ParallelTasks& tasks, const Term& term);
+  template <class Action>
+  void over_components(ParallelTasks& tasks, const Action& action);
+  double dot(std::span<const double> a, std::span<const double> b, ParallelTasks& tasks);
 
   std::unique_ptr<Kernel> kernel_;
   const PreparedStep* step_ = nullptr;

@@ -104,7 +104,9 @@ class DirectSolver : public StepSolver {
   SolveState state_;
   std::vector<Link> links_;  // strategies made so far
   bool analyzed_ = false;
-  std::vector<int> analyzed_body_, analyzed_part_, analyzed_parent_;
+  int analyzed_bodies_ = 0;
+  std::vector<int> analyzed_body_;
+  std::vector<int> analyzed_part_, analyzed_parent_;  // what the kernel looks at, until it is given others
   ProximalStep proximal_;
   Best chain_best_, proximal_best_, attempt_best_;
 };
@@ -130,9 +132,11 @@ std::string DirectSolver::refuse_set(const StepProblem& problem) {
 
 // Rows between the same bodies, or at least between pairs that the analysed pattern has a place for.
 bool DirectSolver::reuse_analysis(const StepProblem& problem, const Parts& parts) {
+  if (problem.body_count() != analyzed_bodies_) return false;
   if (!std::ranges::equal(parts.part_of_body, analyzed_part_)) return false;
   if (!std::ranges::equal(parts.parent_of_part, analyzed_parent_)) return false;
-  return problem.row_body == analyzed_body_ || kernel_->rebind(step_, parts, state_.tasks);
+  return problem.row_body == analyzed_body_ ||
+         kernel_->rebind(step_, Parts(analyzed_part_, analyzed_parent_), state_.tasks);
 }
 
 void DirectSolver::analyze(const StepProblem& problem, const Parts& parts) {
@@ -142,11 +146,12 @@ void DirectSolver::analyze(const StepProblem& problem, const Parts& parts) {
   const bool reused = analyzed && may_reuse && reuse_analysis(problem, parts);
   {
     StageTimer timer(clock_, Stage::analyze);
+    analyzed_bodies_ = problem.body_count();
     analyzed_body_ = problem.row_body;
     analyzed_part_.assign(parts.part_of_body.begin(), parts.part_of_body.end());
     analyzed_parent_.assign(parts.parent_of_part.begin(), parts.parent_of_part.end());
   }
-  if (!reused) kernel_->analyze(step_, parts, state_.tasks);
+  if (!reused) kernel_->analyze(step_, Parts(analyzed_part_, analyzed_parent_), state_.tasks);
   analyzed_ = true;
 }
 

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <chrono>
+#include <span>
 #include <vector>
 
 #include "solver/memory_count.h"
@@ -43,6 +44,12 @@ class ParallelTasks {
     } else {
       team_.run(count, call<Task>, context_of(task));
     }
+  }
+
+  // task(chunk) of each chunk.
+  template <class Chunk, class Task>
+  void run_over(std::span<const Chunk> chunks, const Task& task) {
+    run(static_cast<int>(chunks.size()), [&](int i) { task(chunks[i]); });
   }
 
   // The tasks of a graph, which must stay as it is until the solve has ended.

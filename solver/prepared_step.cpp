@@ -35,8 +35,7 @@ void cut_into_chunks(int count, int least, const Size& size_of, std::vector<Chun
 
 template <class Task>
 void PreparedStep::run(std::span<const Chunk> chunks, const Task& task) const {
-  const int count = static_cast<int>(chunks.size());
-  if (tasks_ != nullptr && count > 1) return tasks_->run(count, [&](int i) { task(chunks[i]); });
+  if (tasks_ != nullptr && chunks.size() > 1) return tasks_->run_over(chunks, task);
   for (const Chunk& chunk : chunks) task(chunk);
 }
 

@@ -241,11 +241,19 @@ std::vector<Outcome> measure_all(std::span<Combination> combinations, const Step
   return outcomes;
 }
 
+RunOptions without_session(RunOptions options) {
+  options.session = false;
+  return options;
+}
+
 Combination make_advancing_combination(const RunOptions& options, const StepContext& context,
                                        const std::atomic<bool>* stop) {
-  RunOptions advancing = options;
-  advancing.session = false;
-  return {options.partitioners.front(), options.refiners.front(), options.advance, advancing, context, stop};
+  return {options.partitioners.front(),
+          options.refiners.front(),
+          options.advance,
+          without_session(options),
+          context,
+          stop};
 }
 
 }  // namespace cleave

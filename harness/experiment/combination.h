@@ -110,7 +110,10 @@ std::vector<CombinationName> combination_names(const RunOptions& options);
 std::vector<Outcome> measure_all(std::span<Combination> combinations, const StepProblem& problem, int turn,
                                  std::span<StepRecord> rows);
 
-// The solver of --advance, in no session, so that a world goes the same way with and without. Where it needs parts it gets those of the run's first partitioner and refiner.
+// What advances a world is in no session, so that the world goes the same way with one and without.
+RunOptions without_session(RunOptions options);
+
+// The solver of --advance. Where it needs parts it gets those of the run's first partitioner and refiner.
 Combination make_advancing_combination(const RunOptions& options, const StepContext& context,
                                        const std::atomic<bool>* stop = nullptr);
 

@@ -115,9 +115,7 @@ void Simulation::run_worlds(const RowSink& write, const Progress& progress) {
     run_world(combinations_, advancing, write, progress);
   } else {
     // Equal solvers that advance: one does not see what the other keeps in its scratch.
-    RunOptions options = options_;
-    options.session = false;
-    std::vector<Combination> advancing = make_combinations(options, context_, &stop_);
+    std::vector<Combination> advancing = make_combinations(without_session(options_), context_, &stop_);
     for (std::size_t i = 0; i < combinations_.size(); ++i)
       run_world({&combinations_[i], 1}, advancing[i], write, progress);
   }

@@ -43,8 +43,8 @@ struct MachineInfo {
   double dense_gflop_per_s = 0;
   DispatchCost dispatch;
 };
-MachineInfo
-machine_info();  // measures the dense kernel and, once a process, the dispatch of tasks: about 30 ms
+// Measures the dense kernel and, once a process, the dispatch of tasks: about 30 ms.
+MachineInfo machine_info();
 
 std::string host_name();  // "unknown" where the system does not say
 

@@ -127,8 +127,8 @@ void BranchKernel::solve(std::span<const double> f_v, std::span<const double> f_
   StageTimer timer(tasks.clock(), Stage::solve);
   const auto groups = step_->group_chunks(), bodies = step_->body_chunks();
   const int group_tasks = static_cast<int>(groups.size()), body_tasks = static_cast<int>(bodies.size());
-  tasks.run(group_tasks, [&](int i) { system_.weigh(groups[i], f_r); });
-  tasks.run(body_tasks, [&](int i) { system_.collect(bodies[i], f_v, x_); });
+  tasks.run_over(groups, [&](const Chunk& chunk) { system_.weigh(chunk, f_r); });
+  tasks.run_over(bodies, [&](const Chunk& chunk) { system_.collect(chunk, f_v, x_); });
   substitute(tasks);
   tasks.run(group_tasks + body_tasks, [&](int i) {
     if (i < group_tasks) return system_.expand(groups[i], x_, f_r, dlambda);
@@ -138,11 +138,9 @@ void BranchKernel::solve(std::span<const double> f_v, std::span<const double> f_
 
 void BranchKernel::apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::solve);
-  const auto bodies = step_->body_chunks();
-  const int body_tasks = static_cast<int>(bodies.size());
-  tasks.run(body_tasks, [&](int i) { system_.to_positions(bodies[i], f, x_); });
+  tasks.run_over(step_->body_chunks(), [&](const Chunk& chunk) { system_.to_positions(chunk, f, x_); });
   substitute(tasks);
-  tasks.run(body_tasks, [&](int i) { system_.to_bodies(bodies[i], x_, x); });
+  tasks.run_over(step_->body_chunks(), [&](const Chunk& chunk) { system_.to_bodies(chunk, x_, x); });
 }
 
 double BranchKernel::local_mflop() const {

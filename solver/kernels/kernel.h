@@ -23,7 +23,7 @@ class Kernel {
  public:
   virtual ~Kernel() = default;
 
-  // Symbolic analysis of the pattern; step must outlive the kernel's use. parts: unused by
+  // Symbolic analysis of the pattern; step and parts must outlive the kernel's use. parts: unused by
   // kernels that do not split. What factor and workspace will take, with D > 0 on every row, is requested of
   // tasks.memory() before it is allocated: throws MemoryRefused, here and in rebind.
   virtual void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) = 0;

@@ -24,6 +24,10 @@ constexpr double kProgress = 0.75;
 constexpr int kRestarts = 2;     // without a new least count of violations, before single flips
 constexpr int kSingleFlips = 1;  // without progress, before giving up
 
+bool is_settled(int changed, std::size_t rows) {
+  return changed <= kSettledShare * static_cast<double>(rows);
+}
+
 int count_changes(const std::vector<RowState>& before, const std::vector<RowState>& after) {
   int changed = 0;
   for (std::size_t r = 0; r < before.size(); ++r) changed += before[r] != after[r];
@@ -41,9 +45,10 @@ class Pivot : public Strategy {
       StageTimer timer(state.tasks.clock(), Stage::predict);
       predictor_.bind(*state.step);
     }
-    const bool knows_set =
-        state.options.session && state.changed_rows <= kSettledShare * static_cast<double>(state.state.size());
-    sweep(state, knows_set ? 0 : state.options.predictor_sweeps);
+    clamp(state);
+    warm_state_ = state.state;
+    if (!state.options.session || !is_settled(state.changed_rows, warm_state_.size()))
+      sweep(state, state.options.predictor_sweeps);
     state.changed_rows = state.step->row_count();
     int least = std::numeric_limits<int>::max(), stalled = 0;
     const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
@@ -58,6 +63,7 @@ class Pivot : public Strategy {
         stalled = 0;
         for (int row : state.violated) state.flip(row);
       } else if (++stalled <= kRestarts) {
+        clamp(state);
         sweep(state, kRestartSweeps);
       } else if (stalled <= kRestarts + kSingleFlips) {
         state.flip(state.violated.back());
@@ -69,7 +75,8 @@ class Pivot : public Strategy {
   }
 
  private:
-  void sweep(SolveState& state, int sweeps) {
+  // Impulses within their bounds, which then tell the states.
+  static void clamp(SolveState& state) {
     StageTimer timer(state.tasks.clock(), Stage::predict);
     const StepProblem& problem = state.step->problem();
     for (std::size_t r = 0; r < state.impulse.size(); ++r) {
@@ -77,20 +84,23 @@ class Pivot : public Strategy {
     }
     state.update_velocity();
     state.states_from_impulses();
-    if (state.options.session && sweeps != kRestartSweeps) warm_state_ = state.state;
+  }
+
+  void sweep(SolveState& state, int sweeps) {
+    StageTimer timer(state.tasks.clock(), Stage::predict);
     for (int done = 0; done < sweeps; done += SlabSweeps::kMostSweeps) {
       last_state_ = state.state;
       predictor_.run(std::min(SlabSweeps::kMostSweeps, sweeps - done), state.impulse, state.velocity,
                      state.tasks);
       state.states_from_impulses();
-      if (count_changes(last_state_, state.state) <= kSettledShare * static_cast<double>(last_state_.size())) break;
+      if (is_settled(count_changes(last_state_, state.state), last_state_.size())) break;
     }
   }
 
   bool finish(SolveState& state, double tolerance) {
     StageTimer timer(state.tasks.clock(), Stage::refine);
     state.refine_free(0.1 * tolerance, 2, true);
-    if (state.options.session) state.changed_rows = count_changes(warm_state_, state.state);
+    state.changed_rows = count_changes(warm_state_, state.state);
     return state.residual() <= state.step->exact_limit_m_per_s();
   }
 

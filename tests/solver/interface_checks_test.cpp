@@ -11,6 +11,7 @@
 #include "solver/solve_state.h"
 #include "solver/step_solver.h"
 #include "solver/strategies/strategy.h"
+#include "tests/solver/kernel_wrapper.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/solver_checks.h"
 
@@ -87,29 +88,18 @@ TEST_P(InterfaceChecks, OneCutRowThatIsOffInTheSolversCopyFailsTheJudge) {
 }
 
 // Adds a little to the increments of one row's impulse and of its first body's velocity in every solve.
-class SpoiltKernel : public Kernel {
+class SpoiltKernel : public KernelWrapper {
  public:
   SpoiltKernel(std::unique_ptr<Kernel> true_kernel, int row, int body, double off)
-      : kernel_(std::move(true_kernel)), row_(row), body_(body), off_(off) {}
-  void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override {
-    kernel_->analyze(step, parts, tasks);
-  }
-  bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override {
-    return kernel_->rebind(step, parts, tasks);
-  }
-  bool factor(const RowWeights& weights, ParallelTasks& tasks) override {
-    return kernel_->factor(weights, tasks);
-  }
+      : KernelWrapper(std::move(true_kernel)), row_(row), body_(body), off_(off) {}
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
              std::span<double> dlambda, ParallelTasks& tasks) override {
-    kernel_->solve(f_v, f_r, dv, dlambda, tasks);
+    KernelWrapper::solve(f_v, f_r, dv, dlambda, tasks);
     dlambda[row_] += off_;
     dv[6 * body_] += off_;
   }
-  double local_mflop() const override { return kernel_->local_mflop(); }
 
  private:
-  std::unique_ptr<Kernel> kernel_;
   int row_, body_;
   double off_;
 };

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "solver/carried_factor.h"
+#include "solver/direct_solver.h"
 #include "solver/registry.h"
+#include "tests/solver/kernel_wrapper.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/seeded_random.h"
 #include "tests/solver/solver_checks.h"
@@ -83,32 +85,18 @@ INSTANTIATE_TEST_SUITE_P(Kernels, SessionTest,
 
 // Dear to factor and cheap to apply, so that its factor is carried; where a wrong one is planted, what is carried is
 // that of another matrix: diagonal, with entries of this sign and size.
-class Dear : public Kernel {
+class Dear : public KernelWrapper {
  public:
-  explicit Dear(std::optional<double> planted = {}) : planted_(planted) {}
-  void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override {
-    kernel_->analyze(step, parts, tasks);
-  }
-  bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override {
-    return kernel_->rebind(step, parts, tasks);
-  }
-  bool factor(const RowWeights& weights, ParallelTasks& tasks) override {
-    return kernel_->factor(weights, tasks);
-  }
-  void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
-             std::span<double> dlambda, ParallelTasks& tasks) override {
-    kernel_->solve(f_v, f_r, dv, dlambda, tasks);
-  }
+  explicit Dear(std::optional<double> planted = {})
+      : KernelWrapper(make_monolithic_kernel(Settings())), planted_(planted) {}
   double local_mflop() const override { return 1e3; }
-  bool can_be_carried() const override { return true; }
   double apply_mflop() const override { return 0; }
   void apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) override {
-    if (!planted_) return kernel_->apply_factor(f, x, tasks);
+    if (!planted_) return KernelWrapper::apply_factor(f, x, tasks);
     for (std::size_t k = 0; k < f.size(); ++k) x[k] = *planted_ * f[k] * static_cast<double>(1 + k % 7);
   }
 
  private:
-  std::unique_ptr<Kernel> kernel_ = make_monolithic_kernel(Settings());
   std::optional<double> planted_;
 };
 
@@ -177,6 +165,42 @@ TEST_F(CarriedFactorTest, IsMadeAnewWhereItIsWrong) {
     EXPECT_EQ(counts.factorizations, 1) << planted;
     EXPECT_LT(defect(step_, d_, f_v_, f_r_, dv_), 1e-9) << planted;
   }
+}
+
+// Factors, but for the step of which only rows are given; and from then on anew.
+class FactorsLate : public Strategy {
+ public:
+  bool run(SolveState& state) override {
+    if (++steps_ == 2) return true;
+    if (steps_ > 2) dynamic_cast<CarriedFactor&>(*state.kernel).forget();
+    return state.factor_free();
+  }
+
+ private:
+  int steps_ = 0;
+};
+
+// Pairs of bodies of the second step have no place in the first one's pattern, so that the third one is analysed.
+TEST(SessionPartsTest, AreThoseOfTheStepAtHand) {
+  const StepProblem first = make_chain(3, {.links = 60}),
+                    later = make_chain(4, {.links = 60, .extra_joints = 20});
+  const auto solver = make_direct_solver("pivot", "schur-bodies", {.session = true}, Settings(),
+                                         std::make_unique<FactorsLate>());
+  const std::vector<int> parts = sliced_parts(60, 4);
+  ASSERT_EQ(first.body_count(), 60);
+  Solution solution = cold_start(first);
+  solver->solve(first, parts, solution);
+  {
+    std::vector<int> gone = parts;  // the caller's, who does with it what he likes
+    solution = cold_start(later);
+    solver->solve(later, gone, solution);
+    std::ranges::fill(gone, 0);
+  }
+  const SolveSummary carried = solver->solve(later, parts, solution);
+  Solution fresh = cold_start(later);
+  const SolveSummary alone = make_step_solver("pivot:schur-bodies")->solve(later, parts, fresh);
+  EXPECT_GT(alone.interface_unknowns, 0);
+  EXPECT_EQ(carried.interface_unknowns, alone.interface_unknowns);
 }
 
 }  // namespace
