@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "harness/base/hash.h"
@@ -18,6 +19,7 @@
 #include "harness/experiment/step_record.h"
 #include "solver/problem_hash.h"
 #include "solver/residual.h"
+#include "solver/vertex_cover.h"
 
 namespace cleave {
 namespace {
@@ -64,6 +66,11 @@ class RowCheck {
     const double stored = table_.number(row_, column);
     note(same_residual(stored, found) || std::abs(stored - found) <= kEnergyTolerance * scale, column,
          table_.cell(row_, column), number_text(found));
+  }
+
+  // Whether the solver had no analysis of an earlier step to keep.
+  bool analysed_alone() const {
+    return table_.cell(row_, "reuse_analysis") != "1" && table_.cell(row_, "session") != "1";
   }
 
   void same_text(const char* column, const std::string& found) {
@@ -129,6 +136,16 @@ void check_grown(const ProblemFile& file, const StoredPartition& partition, Step
   check.same_cells(found, kGrownColumns);
 }
 
+// Six for each body of the cover that schur-bodies takes.
+int cover_unknowns(const StepProblem& problem, const std::vector<int>& parts) {
+  const BodyGraph graph = body_graph_of(problem);
+  std::vector<std::pair<int, int>> cut_pairs;
+  for (int body = 0; body < graph.body_count(); ++body)
+    for (const int other : graph.neighbours(body))
+      if (body < other && parts[body] != parts[other]) cut_pairs.emplace_back(body, other);
+  return 6 * static_cast<int>(std::ranges::count(vertex_cover(graph.body_count(), cut_pairs), 1));
+}
+
 void check_measures(const ProblemFile& file, const StoredSolution& stored, const std::vector<int>& parts,
                     const ResidualReport& verdict, RowCheck& check) {
   const BodyGraph graph = body_graph_of(file.problem);
@@ -157,6 +174,8 @@ void check_solved_row(const ProblemFile& file, const std::string& label, const s
     // A solver that says schur-rows and works on something else is found out by its interface.
     if (solution.kernel == "schur-rows")
       check.same_text("interface_unknowns", std::to_string(found.interface_rows));
+    if (solution.kernel == "schur-bodies" && check.analysed_alone())
+      check.same_text("interface_unknowns", std::to_string(cover_unknowns(file.problem, parts)));
   }
   if (has_result(status)) check_measures(file, solution, parts, verdict, check);
   check.same_text("solution_hash", hex(solution_hash(solution.impulse, parts)));

@@ -6,10 +6,12 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
+#include <thread>
 
 #include "harness/base/printable_text.h"
 #include "harness/files/build_info.h"
@@ -52,6 +54,15 @@ Owner read_owner(int file) {
   return owner;
 }
 
+// Who has only just locked the file writes a moment later who it is.
+Owner wait_for_owner(int file) {
+  constexpr int kMostWaits = 1000;
+  Owner owner = read_owner(file);
+  for (int k = 0; k < kMostWaits && owner.pid.empty(); ++k, owner = read_owner(file))
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return owner;
+}
+
 std::string who(const Owner& owner) {
   if (owner.pid.empty()) return "another process";
   return "process " + owner.pid + " on host " + owner.host + " (" + owner.command + ", started " +
@@ -91,7 +102,7 @@ bool DirectoryLock::open_and_lock() {
   if (file_ < 0) fail(path_, "cannot be written");
   struct flock lock = whole_file_lock();
   if (::fcntl(file_, F_OFD_SETLK, &lock) != 0) {
-    if (errno == EAGAIN || errno == EACCES) refuse_held(path_, read_owner(file_));
+    if (errno == EAGAIN || errno == EACCES) refuse_held(path_, wait_for_owner(file_));
     fail(path_, "cannot be locked; name a directory on a disk that has locks");
   }
   struct stat locked, named;

@@ -1,13 +1,16 @@
 // One writer a directory, with real processes; what a killed one leaves; and what --force takes away.
 #include "harness/files/directory_lock.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <fstream>
 #include <set>
 #include <stdexcept>
+#include <thread>
 
 #include "harness/files/build_info.h"
 #include "tests/harness/run_program.h"
@@ -54,6 +57,29 @@ class Running {
  private:
   pid_t process_;
 };
+
+TEST(DirectoryLock, WaitsForTheNameOfWhoHasOnlyJustLocked) {
+  const TemporaryDirectory directory;
+  const fs::path out = directory / "out", path = out / kLockFile;
+  fs::create_directory(out);
+  const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  ASSERT_EQ(::fcntl(file, F_OFD_SETLK, &lock), 0);
+  std::thread holder([file] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    const std::string text = "host: here\npid: 4711\nstart: now\ncommand: cleave run\n";
+    EXPECT_EQ(::pwrite(file, text.data(), text.size(), 0), static_cast<ssize_t>(text.size()));
+  });
+  try {
+    const DirectoryLock second(out, "cleave run");
+    ADD_FAILURE() << "two hold it";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("process 4711 on host here"), std::string::npos) << error.what();
+  }
+  holder.join();
+  ::close(file);
+}
 
 TEST(DirectoryLock, TheSecondIsToldWhoWritesAndTouchesNothing) {
   const TemporaryDirectory directory;

@@ -177,6 +177,22 @@ TEST(LittleMemory, IsARowOrALine) {
   EXPECT_GE(short_of_memory, 3);
 }
 
+// From where the loader just finds room for the libraries: memory ends before main, in destructors, for exceptions.
+TEST(LittleMemory, IsALineWhereverItEnds) {
+  int lines = 0;
+  for (int kbytes = 28000; kbytes <= 36000; kbytes += 100) {
+    const Shell shell;
+    const ProgramResult list = shell.run("ulimit -v " + std::to_string(kbytes) + "; exec $cleave list");
+    SCOPED_TRACE(std::to_string(kbytes) + " kB: " + list.err);
+    if (list.exit_code == 127) continue;  // the loader's own words
+    EXPECT_TRUE(list.exit_code == 0 || list.exit_code == 1) << list.exit_code;
+    // In words of the program's own, or of a library that begins before it.
+    EXPECT_EQ(list.err.find("ut of memory") != std::string::npos, list.exit_code == 1);
+    lines += list.exit_code;
+  }
+  EXPECT_GT(lines, 0);
+}
+
 // A command that has begun to write rows.
 struct Running {
   Running(const fs::path& out, const Arguments& arguments, int lines) : csv(out / "steps.csv") {

@@ -15,12 +15,13 @@ def choose(trial):
 
 
 def _brought(trial, word):
-    """A problem file of the material becomes a copy beside the output."""
+    """A problem file of the material becomes a copy beside the output; one copy, as another command may be reading it."""
     if not str(word).endswith(".h5"):
         return word
     target = trial.directory / "in" / word.name
     target.parent.mkdir(exist_ok=True)
-    shutil.copyfile(word, target)
+    if not target.exists():
+        shutil.copyfile(word, target)
     return f"in/{word.name}"
 
 
