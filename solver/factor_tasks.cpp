@@ -10,7 +10,7 @@ namespace {
 constexpr double kLeastTiledFlops = 4e6;
 
 bool is_tiled(const BlockSymbolic& symbolic, const Branch& branch) {
-  return branch.first == branch.last && front_flops(symbolic.supernodes()[branch.last]) >= kLeastTiledFlops;
+  return branch.first == branch.last && symbolic.supernodes()[branch.last].flops() >= kLeastTiledFlops;
 }
 
 // Tasks that work on a front while its next diagonal block is factored look at its flag.

@@ -16,8 +16,6 @@ int strips_of(int blocks, int strip) { return (blocks + strip - 1) / strip; }
 
 }  // namespace
 
-double front_flops(const Supernode& s) { return 216.0 * s.width * s.row_count * s.row_count; }
-
 FrontStrips::FrontStrips(const Supernode& s) : width_(s.width), rows_below_(s.rows_below()) {
   const int strip = std::clamp(s.row_count / kStrips, kLeastStrip, kMostStrip);
   own_ = strips_of(width_, strip);

@@ -11,9 +11,6 @@
 
 namespace cleave {
 
-// Multiplications and additions of its elimination, 1 each; an upper bound that is near for fronts much larger than wide.
-double front_flops(const Supernode& s);
-
 // Where the strips of a supernode begin, in blocks; of its pattern alone.
 class FrontStrips {
  public:

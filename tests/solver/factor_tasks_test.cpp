@@ -84,7 +84,7 @@ TEST_F(FactorTasksTest, NameTheFrontOfAPivotThatIsNotPositive) {
   const auto tiled = std::ranges::find_if(branches, [&](const Branch& branch) {
     return branch.parent >= 0 && branch.first == branch.last &&
            symbolic().supernodes()[branch.last].width > 8 &&
-           front_flops(symbolic().supernodes()[branch.last]) > 5e6;
+           symbolic().supernodes()[branch.last].flops() > 5e6;
   });
   ASSERT_NE(tiled, branches.end());
   const Supernode& s = symbolic().supernodes()[tiled->last];
