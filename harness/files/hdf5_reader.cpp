@@ -15,8 +15,18 @@ constexpr std::size_t kMostTextBytes = 1 << 16;  // a message of an object heade
 
 Hdf5Handle type_of_attribute(const Hdf5Handle& attribute) { return {H5Aget_type(attribute.id()), H5Tclose}; }
 
+// Numbers whose every bit stands where the processor's have it, in either order of bytes.
+bool is_ordinary(hid_t type) {
+  if (H5Tget_class(type) == H5T_FLOAT)
+    return H5Tequal(type, H5T_IEEE_F64LE) > 0 || H5Tequal(type, H5T_IEEE_F32LE) > 0 ||
+           H5Tequal(type, H5T_IEEE_F64BE) > 0 || H5Tequal(type, H5T_IEEE_F32BE) > 0;
+  if (H5Tget_class(type) == H5T_INTEGER) return H5Tget_precision(type) == 8 * H5Tget_size(type);
+  return true;
+}
+
 std::string type_text(hid_t type) {
-  const std::string bits = std::to_string(8 * H5Tget_size(type)) + "-bit ";
+  const std::string bits =
+      std::to_string(8 * H5Tget_size(type)) + (is_ordinary(type) ? "-bit " : "-bit unusual ");
   switch (H5Tget_class(type)) {
     case H5T_FLOAT:
       return bits + "float";
@@ -33,13 +43,14 @@ std::string type_text(hid_t type) {
 
 bool matches(hid_t type, const Hdf5Element& element) {
   if (H5Tget_class(type) != element.type_class || H5Tget_size(type) != element.size) return false;
+  if (!is_ordinary(type)) return false;
   return element.type_class != H5T_INTEGER || (H5Tget_sign(type) != H5T_SGN_NONE) == element.is_signed;
 }
 
 // Types that hold every value that the element asked for can have, or more; see the head of the header.
 bool converts(hid_t type, const Hdf5Element& element) {
   const std::size_t size = H5Tget_size(type);
-  if (H5Tget_class(type) != element.type_class) return false;
+  if (H5Tget_class(type) != element.type_class || !is_ordinary(type)) return false;
   if (element.type_class == H5T_FLOAT) return size == 4 && element.size == 8;
   return H5Tget_sign(type) != H5T_SGN_NONE && (size == 4 || size == 8);
 }
