@@ -61,6 +61,7 @@ int BlockCholesky::row_of_block(int first_node, int second_node) const {
   const int p = symbolic_.position_of_node()[first_node], q = symbolic_.position_of_node()[second_node];
   const int column = std::min(p, q), row = std::max(p, q);
   const Supernode& s = symbolic_.supernodes()[symbolic_.supernode_at_position()[column]];
+  if (row < s.first_position + s.width) return row - s.first_position;  // own columns are the first rows
   const auto begin = symbolic_.rows().begin() + s.first_row, end = begin + s.row_count;
   const auto found = std::lower_bound(begin, end, row);
   return found != end && *found == row ? static_cast<int>(found - begin) : -1;

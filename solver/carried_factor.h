@@ -40,6 +40,7 @@ class CarriedFactor : public Kernel {
   void forget() { has_factor_ = is_own_ = false; }
 
   void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
+  bool analyzes_as_a_task() const override { return kernel_->analyzes_as_a_task(); }
   // Always true with a factor at hand: new pairs of bodies find their place at the next factorisation.
   bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
   bool factor(const RowWeights& weights, ParallelTasks& tasks) override;

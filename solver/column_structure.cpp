@@ -71,7 +71,6 @@ bool ColumnStructure::find_columns(long most_blocks) {
   for (int p = 0; p < node_count_; ++p) position_of_node_[node_at_position_[p]] = p;
   find_elimination_tree();
   postorder();
-  find_elimination_tree();
   return find_structures(most_blocks);
 }
 
@@ -144,6 +143,13 @@ void ColumnStructure::postorder() {
   for (int p = 0; p < node_count_; ++p) {
     node_at_position_[p] = stack_[mark_[p]];
     position_of_node_[node_at_position_[p]] = p;
+  }
+  next_.resize(node_count_);  // the new position of an old one
+  for (int p = 0; p < node_count_; ++p) next_[mark_[p]] = p;
+  stack_.assign(parent_.begin(), parent_.end());
+  for (int p = 0; p < node_count_; ++p) {
+    const int up = stack_[mark_[p]];
+    parent_[p] = up == -1 ? -1 : next_[up];
   }
 }
 

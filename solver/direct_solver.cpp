@@ -86,6 +86,7 @@ class DirectSolver : public StepSolver {
   SolveSummary do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) override;
   void solve_in_memory(const StepProblem& problem, const Parts& parts, Solution& solution,
                        SolveSummary& summary);
+  void plan_analysis(const StepProblem& problem, const Parts& parts);
   void analyze(const StepProblem& problem, const Parts& parts);
   bool attempt(SolveSummary& summary, double delta, std::span<const double> warm_impulse);
   bool run_attempts(SolveSummary& summary, const StepProblem& problem, std::span<const double> warm_impulse);
@@ -103,6 +104,8 @@ class DirectSolver : public StepSolver {
   PreparedStep step_;
   SolveState state_;
   std::vector<Link> links_;  // strategies made so far
+  const StepProblem* planned_problem_ = nullptr;
+  Parts planned_parts_;
   bool analyzed_ = false;
   int analyzed_bodies_ = 0;
   std::vector<int> analyzed_body_;
@@ -153,6 +156,15 @@ void DirectSolver::analyze(const StepProblem& problem, const Parts& parts) {
   }
   if (!reused) kernel_->analyze(step_, Parts(analyzed_part_, analyzed_parent_), state_.tasks);
   analyzed_ = true;
+}
+
+// At once where it runs tasks of its own, else when a strategy has time for it. What the plan holds fits into the
+// function without memory of its own.
+void DirectSolver::plan_analysis(const StepProblem& problem, const Parts& parts) {
+  planned_problem_ = &problem;
+  planned_parts_ = parts;
+  state_.analysis = [this] { analyze(*planned_problem_, planned_parts_); };
+  if (!kernel_->analyzes_as_a_task()) state_.analyze();
 }
 
 // Runs the strategies one after the other until one succeeds; each hand-over is counted. When all fail, the
@@ -256,7 +268,7 @@ void DirectSolver::solve_in_memory(const StepProblem& problem, const Parts& part
     step_.prepare(problem, &state_.tasks);
   }
   if (carried_ != nullptr) carried_->begin_step(state_.changed_rows);
-  analyze(problem, parts);
+  plan_analysis(problem, parts);
   state_.part_of_body = parts.part_of_body;
   step_.set().to_axes(solution.impulse);
   bool solved = run_attempts(summary, problem, solution.impulse);
@@ -265,6 +277,7 @@ void DirectSolver::solve_in_memory(const StepProblem& problem, const Parts& part
     carried_->forget();
     solved = run_attempts(summary, problem, solution.impulse);
   }
+  state_.analyze();  // where no strategy came to a factorisation
   step_.set().project(state_.impulse);
   solution.impulse = state_.impulse;
   step_.set().to_rows(solution.impulse);

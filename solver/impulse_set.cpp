@@ -30,10 +30,10 @@ void ImpulseSet::project(std::span<double> impulse) const {
   }
 }
 
-double ImpulseSet::residual(std::span<const double> d, std::span<const double> impulse,
+double ImpulseSet::residual(int first, int last, std::span<const double> d, std::span<const double> impulse,
                             std::span<const double> w) const {
   double worst = 0;
-  for (std::size_t r = 0; r < impulse.size(); ++r) {
+  for (int r = first; r < last; ++r) {
     const double target = std::clamp(impulse[r] - w[r] / d[r], problem_->lower[r], problem_->upper[r]);
     const double miss = d[r] * std::abs(impulse[r] - target);
     if (!(miss <= worst)) worst = miss;  // a NaN must not pass unseen

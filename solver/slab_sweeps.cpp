@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kSlabRows = 600;   // about so many in a slab: five microseconds of work
 constexpr int kWordColors = 64;  // colours in one word of used_colors_
+constexpr double kLastPlace = 1 - 1e-9;
 
 }  // namespace
 
@@ -22,7 +23,7 @@ void SlabSweeps::bind(const PreparedStep& step, ParallelTasks& tasks) {
   measure_distances(step);
   cut_slabs(step);
   color_groups(step);
-  sort_groups(step);
+  sort_groups(step, tasks);
   assign_places(step);
   tasks.run(set_count(), [&](int set) { pack_rows(step, set); });
   build_graph();
@@ -116,15 +117,16 @@ void SlabSweeps::color_groups(const PreparedStep& step) {
   std::partial_sum(color_first_.begin(), color_first_.end(), color_first_.begin());
 }
 
-void SlabSweeps::sort_groups(const PreparedStep& step) {
+void SlabSweeps::sort_groups(const PreparedStep& step, ParallelTasks& tasks) {
   const auto color = [this](int g) { return color_first_[set_of_group_[g]] + color_of_group_[g]; };
   sort_into_buckets(static_cast<int>(set_of_group_.size()), color_first_.back(), color, group_first_,
                     groups_);
   const auto rows = [&](int g) { return step.groups()[g].row_count; };
-  for (std::size_t c = 0; c + 1 < group_first_.size(); ++c) {
-    std::sort(groups_.begin() + group_first_[c], groups_.begin() + group_first_[c + 1],
-              [&](int a, int b) { return rows(a) != rows(b) ? rows(a) > rows(b) : a < b; });
-  }
+  tasks.run(set_count(), [&](int set) {
+    for (int c = color_first_[set]; c < color_first_[set + 1]; ++c)
+      std::sort(groups_.begin() + group_first_[c], groups_.begin() + group_first_[c + 1],
+                [&](int a, int b) { return rows(a) != rows(b) ? rows(a) > rows(b) : a < b; });
+  });
 }
 
 // Insides by slab, then the gaps behind even slabs, then those behind odd ones.
@@ -159,7 +161,8 @@ void SlabSweeps::build_graph() {
       }
     }
   }
-  graph_.build(kMostSweeps * tasks, waits_, places_);
+  places_.push_back(kLastPlace);
+  graph_.build(kMostSweeps * tasks + 1, waits_, places_);
 }
 
 // What two threads write stays apart in memory: velocities by slab, each body in a cache line of its own, and rows by
@@ -260,7 +263,8 @@ void SlabSweeps::give_out(std::span<double> impulse, std::span<double> v, Parall
   run_over_chunks(tasks, give_body, give_group);
 }
 
-void SlabSweeps::run(int sweeps, std::span<double> impulse, std::span<double> v, ParallelTasks& tasks) {
+void SlabSweeps::run(int sweeps, std::span<double> impulse, std::span<double> v, ParallelTasks& tasks,
+                     const std::function<void()>& beside) {
   assert(sweeps <= kMostSweeps);
   const SlabArrays arrays{step_->groups(),
                           place_of_body_.data(),
@@ -271,6 +275,7 @@ void SlabSweeps::run(int sweeps, std::span<double> impulse, std::span<double> v,
                           static_cast<int>(place_of_body_.size())};
   take_in(impulse, v, tasks);
   tasks.run(Stage::predict, graph_, [&](int task) {
+    if (task == kMostSweeps * set_count()) return beside();
     if (task / set_count() >= sweeps) return;
     check_stop(tasks.stop());
     const int set = task % set_count();

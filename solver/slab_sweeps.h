@@ -16,6 +16,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -34,8 +35,11 @@ class SlabSweeps {
   void bind(const PreparedStep& step, ParallelTasks& tasks);
 
   // impulse (m) and v = v0 + M^-1 J^T impulse (n, 6) are updated in place, v to single precision; impulses at a bound
-  // are exactly there. Ends with SolveStopped where tasks say so.
-  void run(int sweeps, std::span<double> impulse, std::span<double> v, ParallelTasks& tasks);
+  // are exactly there. beside: one more task, for work that has nothing to do with the sweeps. Ends with SolveStopped
+  // where tasks say so.
+  void run(
+      int sweeps, std::span<double> impulse, std::span<double> v, ParallelTasks& tasks,
+      const std::function<void()>& beside = [] {});
 
   int slab_count() const { return slab_count_; }
   std::span<const int> slab_of_body() const { return slab_of_body_; }
@@ -52,7 +56,7 @@ class SlabSweeps {
   int walk_from(const PreparedStep& step, int start, int distance);
   void cut_slabs(const PreparedStep& step);
   void color_groups(const PreparedStep& step);
-  void sort_groups(const PreparedStep& step);
+  void sort_groups(const PreparedStep& step, ParallelTasks& tasks);
   void assign_places(const PreparedStep& step);
   void pack_rows(const PreparedStep& step, int set);
   void take_in(std::span<const double> impulse, std::span<const double> v, ParallelTasks& tasks);
@@ -72,7 +76,7 @@ class SlabSweeps {
   std::vector<SlabBody> bodies_;  // by place, then one that stands still
   std::vector<SlabRow> rows_;     // by place, in the order of groups_
   std::vector<float> impulse_;    // by place
-  TaskGraph graph_;               // of kMostSweeps sweeps
+  TaskGraph graph_;               // of kMostSweeps sweeps, and what is done beside them
   // Scratch.
   std::vector<int> distance_, queue_, rows_at_, slab_first_, set_of_group_, color_of_group_, group_count_;
   std::vector<std::uint64_t> used_colors_;  // a bit a colour, by body

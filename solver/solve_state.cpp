@@ -1,8 +1,10 @@
 #include "solver/solve_state.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace cleave {
 
@@ -34,8 +36,16 @@ void SolveState::update_velocity() {
   step->set().to_axes(slack);
 }
 
+void SolveState::analyze() {
+  if (!analysis) return;
+  const auto begin = StageClock::Clock::now();
+  std::exchange(analysis, nullptr)();
+  analysis_ms = std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin).count();
+}
+
 bool SolveState::factor() {
   check_stop(options.stop);
+  analyze();
   ++summary->factorizations;
   return kernel->factor({weight, step->set().axes()}, tasks);
 }

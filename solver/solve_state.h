@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -50,6 +51,10 @@ struct SolveState {
   // The kernel's factorisation for the weights; counted. False when it finds a non-positive pivot.
   bool factor();
 
+  // The kernel's analysis, where it is still to be done: a strategy that has other work first may do it beside that, as
+  // one of its tasks. factor() does it otherwise.
+  void analyze();
+
   // dv and dlambda from f_v and f_r by the kernel.
   void solve();
 
@@ -80,7 +85,7 @@ struct SolveState {
 
   // Light work on rows in ranges that depend on their number alone, one task each: task(first, last, range). A short
   // vector is one range: to wake a thread for it would take longer.
-  static constexpr int kRowsOfARange = 4096;
+  static constexpr int kRowsOfARange = 1024;
   int range_count() const { return (step->row_count() + kRowsOfARange - 1) / kRowsOfARange; }
   template <class Task>
   void run_over_rows(const Task& task);
@@ -94,6 +99,8 @@ struct SolveState {
   ParallelTasks tasks;
   const PreparedStep* step = nullptr;
   Kernel* kernel = nullptr;
+  std::function<void()> analysis;  // empty once it is done
+  double analysis_ms = 0;          // what it took, once it is done
   SolveSummary* summary = nullptr;
 
   std::vector<double> impulse, velocity, slack;  // (m), (n, 6), (m)

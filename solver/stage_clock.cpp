@@ -10,11 +10,17 @@ void StageClock::start() {
   times_.stage_ms.fill(0);
   task_ms_.clear();
   stages_.clear();
+  thread_ = std::this_thread::get_id();
   begin_ = Clock::now();
 }
 
 void StageClock::add(Stage stage, double milliseconds) {
   times_.stage_ms[static_cast<std::size_t>(stage)] += milliseconds;
+}
+
+void StageClock::move(Stage from, Stage to, double milliseconds) {
+  add(from, -milliseconds);
+  add(to, milliseconds);
 }
 
 void StageClock::add_tasks(std::span<const double> task_ms) {

@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstddef>
 #include <span>
+#include <thread>
 #include <vector>
 
 #include "solver/stage_times.h"
@@ -30,6 +31,8 @@ class StageClock {
 
   void start();                                // begins a solve: all zero
   void add(Stage stage, double milliseconds);  // serial or parallel wall time of a stage
+  // Of a solve on one thread: what one stage did in the midst of another.
+  void move(Stage from, Stage to, double milliseconds);
   // Tasks of one parallel stage that has just run (wall times in ms): independent ones, or those of a graph.
   void add_tasks(std::span<const double> task_ms);
   void add_graph(const TaskGraph& graph, std::span<const double> task_ms);
@@ -48,6 +51,7 @@ class StageClock {
   bool models_;
   DispatchCost dispatch_;
   bool timing_ = false;
+  std::thread::id thread_;  // that started it
   StageTimes times_;
   std::vector<double> task_ms_;  // of all parallel stages of the solve, one after the other
   std::vector<ParallelStage> stages_;
@@ -57,12 +61,16 @@ class StageClock {
 };
 
 // Times a scope and adds it to a stage. Inside the scope of another timer it adds nothing: the outermost
-// stage counts, so that the stages never overlap (the solves of iterative refinement belong to `refine`).
+// stage counts, so that the stages never overlap (the solves of iterative refinement belong to `refine`). Nor does it in
+// a task on another thread than the one that started the clock.
 class StageTimer {
  public:
   StageTimer(StageClock& clock, Stage stage)
-      : clock_(clock), stage_(stage), outermost_(!clock.timing_), begin_(StageClock::Clock::now()) {
-    clock_.timing_ = true;
+      : clock_(clock),
+        stage_(stage),
+        outermost_(std::this_thread::get_id() == clock.thread_ && !clock.timing_),
+        begin_(StageClock::Clock::now()) {
+    if (outermost_) clock_.timing_ = true;
   }
   ~StageTimer() {
     if (!outermost_) return;

@@ -62,13 +62,13 @@ class BoxTree {
     if (last - first <= kMostBoxesOfALeaf) return node;
     const AxisAlignedBox& bounds = nodes_[node].bounds;
     const auto side = [&](int axis) { return bounds[2 * axis + 1] - bounds[2 * axis]; };
-    const int longest = std::ranges::max({0, 1, 2}, {}, side);
+    const int longest = side(0) >= std::max(side(1), side(2)) ? 0 : side(1) >= side(2) ? 1 : 2;
     const auto twice_middle = [&](int box) {
       return boxes_[box][2 * longest] + boxes_[box][2 * longest + 1];
     };
     const int middle = first + (last - first) / 2;
-    std::ranges::nth_element(members_.begin() + first, members_.begin() + middle, members_.begin() + last, {},
-                             twice_middle);
+    std::nth_element(members_.begin() + first, members_.begin() + middle, members_.begin() + last,
+                     [&](int a, int b) { return twice_middle(a) < twice_middle(b); });
     build(first, middle);
     const int right = build(middle, last);
     nodes_[node].right = right;

@@ -23,6 +23,7 @@ namespace cleave {
 class BranchKernel : public Kernel {
  public:
   void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
+  bool analyzes_as_a_task() const override { return true; }
   bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
   bool factor(const RowWeights& weights, ParallelTasks& tasks) override;
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,

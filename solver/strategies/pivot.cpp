@@ -87,12 +87,19 @@ class Pivot : public Strategy {
     state.states_from_impulses();
   }
 
+  // The kernel's analysis is done beside the first sweeps. On one thread it still counts as what it is.
+  void run_predictor(SolveState& state, int sweeps) {
+    const bool analyzes = static_cast<bool>(state.analysis);
+    predictor_.run(sweeps, state.impulse, state.velocity, state.tasks, [&state] { state.analyze(); });
+    if (analyzes && state.tasks.threads() == 1)
+      state.tasks.clock().move(Stage::predict, Stage::analyze, state.analysis_ms);
+  }
+
   void sweep(SolveState& state, int sweeps) {
     StageTimer timer(state.tasks.clock(), Stage::predict);
     for (int done = 0; done < sweeps; done += SlabSweeps::kMostSweeps) {
       last_state_ = state.state;
-      predictor_.run(std::min(SlabSweeps::kMostSweeps, sweeps - done), state.impulse, state.velocity,
-                     state.tasks);
+      run_predictor(state, std::min(SlabSweeps::kMostSweeps, sweeps - done));
       state.states_from_impulses();
       if (is_settled(count_changes(last_state_, state.state), last_state_.size())) break;
     }

@@ -15,6 +15,7 @@ class KernelWrapper : public Kernel {
   void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override {
     kernel_->analyze(step, parts, tasks);
   }
+  bool analyzes_as_a_task() const override { return kernel_->analyzes_as_a_task(); }
   bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override {
     return kernel_->rebind(step, parts, tasks);
   }
