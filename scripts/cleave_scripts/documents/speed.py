@@ -33,13 +33,14 @@ def two_threads(stored):
     lines = [[bodies, f"{cfm:g}", *(cells[bodies, cfm, solver] for solver in solvers)]
              for bodies, cfm in dict.fromkeys((share.bodies, share.cfm) for share in piles)]
     least = {step: thread_times.least(of_step) for step, of_step in thread_times.by_step(large).items()}
-    return (f"Two threads as a share of the ceiling, which is what two independent solves on one thread each reach side by side in the "
-            f"same run, 2 on an ideal machine. In brackets t_s of one thread over that of two, and the ceiling; below "
-            f"{thread_times.LEAST_CEILING} of it no share is measured (-). Medians of {len({row['round'] for row in rows})} rounds "
-            f"(`{THREADS[1]}`; {stored.origin(THREADS[0])}). Rock piles:\n\n" +
+    return (f"Two threads as a share of the ceiling: of what two independent solves on one thread each reach side by side in the "
+            f"same run, 2 on an ideal machine. In brackets t_s of one thread over that of two, and the ceiling; where that is "
+            f"below {thread_times.LEAST_CEILING} no share is measured (-). Medians of {len({row['round'] for row in rows})} "
+            f"rounds (`{THREADS[1]}`; {stored.origin(THREADS[0])}). Rock piles:\n\n" +
             text.table(["rocks", "cfm", *(f"`{solver}`" for solver in solvers)], lines) +
             f"\n\n`schur` on Large Rock Pile, the least of {len({share.combination for share in large})} combinations:\n\n" +
-            text.table([f"step {step}" for step in least], [[f"`{share.combination}` {_share(share)}" for share in least.values()]]))
+            text.table([f"step {step}" for step in least],
+                       [[f"`{share.combination}` {_share(share)}" for share in least.values()]]))
 
 
 def model(stored):

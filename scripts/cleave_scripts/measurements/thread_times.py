@@ -90,11 +90,12 @@ def _cells(share):
 def lines_of_shares(found):
     """A table of the rock piles, and one of Large Rock Pile, where the least of the combinations is shown."""
     times = ("one thread, ms", "ratio", "ceiling")
-    parts = [text.table(("rocks", "cfm", "solver", *times, "share"),
-                        [[share.bodies, f"{share.cfm:g}", share.solver, *_cells(share)] for share in of_scene(found, "rock_pile")])]
-    lines = [[step, least(of_step).combination, *_cells(least(of_step)), f"{sum(share.measured for share in of_step)} of {len(of_step)}"]
+    piles = [[share.bodies, f"{share.cfm:g}", share.solver, *_cells(share)] for share in of_scene(found, "rock_pile")]
+    large = [[step, least(of_step).combination, *_cells(least(of_step)),
+              f"{sum(share.measured for share in of_step)} of {len(of_step)}"]
              for step, of_step in by_step(of_scene(found, "large_rock_pile")).items()]
-    return "\n\n".join([*parts, text.table(("Large Rock Pile, step", "combination", *times, "least share", "measured"), lines)])
+    return "\n\n".join([text.table(("rocks", "cfm", "solver", *times, "share"), piles),
+                        text.table(("Large Rock Pile, step", "combination", *times, "least share", "measured"), large)])
 
 
 def by_load(rows):
