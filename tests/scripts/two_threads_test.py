@@ -19,7 +19,8 @@ class TwoThreadsTest(Measurement):
             return self.run_it("--rounds", 3, *arguments, code=code)
 
     def test_three_ways_take_turns_on_the_same_files(self):
-        self.measure("--bodies", 200)
+        told = self.measure("--bodies", 200).stderr
+        self.assertRegex(told, r"round 2/3 done, 0 min \d+ s, about \d+ s to go\n")
         replays = [call.split() for call in self.calls() if call.startswith("replay")]
         of_piles = [words for words in replays if "exact" in words[words.index("--solver") + 1]]
         turn = [("1", "replay0"), ("2", "replay0")]
@@ -31,31 +32,24 @@ class TwoThreadsTest(Measurement):
                              [turn, beside, beside, turn[::-1], turn, beside])
             self.assertEqual(len({" ".join(words[:words.index("--threads")]) for words in calls}), 1)
 
-    def test_the_first_file_comes_once_more_at_both_ends_and_does_not_count(self):
-        self.measure("--bodies", 200)
-        for words in (call.split() for call in self.calls() if call.startswith("replay")):
-            files = [word for word in words if word.endswith(".h5")]
-            self.assertEqual((files[0], files[-1]), (files[1], files[1]))
-            self.assertEqual(len(set(files)), len(files) - 2)
+            files = [word for word in calls[0] if word.endswith(".h5")]
+            self.assertEqual((files[0], files[-1], len(set(files))), (files[1], files[1], len(files) - 2))
         cells = 2 + 4 * 5  # compliances of a pile, steps of Large Rock Pile times partitioners
         self.assertEqual(len(self.rows("two_threads.csv")), cells * 3 * 3 * 3)  # solvers or refiners, ways, rounds
 
-    def test_the_piles_are_chosen(self):
-        self.measure("--bodies", "10000,200")
+    def test_shares_of_the_chosen_piles_are_of_two_solves_side_by_side(self):
+        said = self.measure("--bodies", "10000,200", STAND_IN_BESIDE=1.2).stdout
         records = [call.partition(" --out")[0] for call in self.calls() if call.startswith("record")]
         self.assertEqual(records, [
             f"record --scene rock_pile --at {step} --bodies {bodies} --cfm {cfm} --threads 2"
             for bodies, step in ((200, 200), (10000, 150)) for cfm in ("1e-5", "1e-10")
         ] + ["record --scene large_rock_pile --at 100,200,300,400 --threads 2"])
         self.assertEqual({row["bodies"] for row in self.rows("two_threads.csv")}, {"200", "600", "10000"})
-
-    def test_what_two_threads_reach_is_told_as_a_share_of_two_solves_side_by_side(self):
-        said = self.measure(STAND_IN_BESIDE=1.2).stdout
         row = next(row for row in self.rows("two_threads.csv") if row["processes"] == "2" and row["bodies"] == "200")
         self.assertEqual((row["threads"], float(row["t_s_ms"]), row["t_s_waiting_ms"]), ("1", 8.8, "0.25"))
         self.assertIn("| 10000 | 1e-10 | pivot:schur-nested | 8.00 | 2.00 | 1.82 | 1.10 |", said)
         self.assertIn("| 300 | mindp+none | 8.00 | 2.00 | 1.82 | 1.10 | 15 of 15 |", said)
-        self.assertIn("| 600 | 1e-05 | 1.10 (2.00 of 1.82) | 1.10 (", speed.two_threads(self.stored()))
+        self.assertIn("| 200 | 1e-05 | 1.10 (2.00 of 1.82) | 1.10 (", speed.two_threads(self.stored()))
 
     def test_a_low_ceiling_is_no_measurement(self):
         said = self.measure("--bodies", 600, STAND_IN_BESIDE=1.5).stdout
@@ -67,9 +61,6 @@ class TwoThreadsTest(Measurement):
         self.measure("--bodies", 200, STAND_IN_LATE_S=0.3)
         said = self.measure("--bodies", 200, code=1, STAND_IN_LATE_S=0.5).stderr  # 15 cells, 3 solves of 8 ms in each
         self.assertIn("solves side by side ended 0.5 s apart, so the last that count were alone", said.splitlines()[-1])
-
-    def test_it_says_how_long_it_takes(self):
-        self.assertRegex(self.measure("--bodies", 200).stderr, r"round 2/3 done, 0 min \d+ s, about \d+ s to go\n")
 
     def test_bad_input_and_failures_are_one_line(self):
         self.check_least("--rounds", 3)
