@@ -59,8 +59,11 @@ class TwoThreadsTest(Measurement):
 
     def test_solves_that_count_and_were_alone_are_refused(self):
         self.measure("--bodies", 200, STAND_IN_LATE_S=0.3)
-        said = self.measure("--bodies", 200, code=1, STAND_IN_LATE_S=0.5).stderr  # 15 cells, 3 solves of 8 ms in each
-        self.assertIn("solves side by side ended 0.5 s apart, so the last that count were alone", said.splitlines()[-1])
+        self.calls()
+        said = self.measure("--bodies", 200, code=1, STAND_IN_LATE_S=0.5).stderr.splitlines()  # 15 cells, 3 solves of 8 ms in each
+        self.assertEqual(sum(call.endswith("/replay1 --force") for call in self.calls()), 1 + 3)  # of 200 rocks, and again
+        self.assertIn("solves side by side ended 0.5 s apart, so the last that count were alone", said[-2])
+        self.assertIn("solves side by side were not at the same time, 3 times", said[-1])
 
     def test_bad_input_and_failures_are_one_line(self):
         self.check_least("--rounds", 3)
