@@ -85,22 +85,27 @@ void BlockCholesky::set_zero(int branch_index) {
             panels_.begin() + end.panel_offset + 36L * end.width * end.row_count, 0.0);
 }
 
-// Adds the child's update matrix (lower triangle of blocks) into the parent's panel and update matrix. Runs
+// Adds the child's update matrix (lower triangle of blocks) into a range of the parent's panel and update matrix. Runs
 // of rows that are adjacent in the parent too are added in one go.
-void BlockCholesky::add_update(const Supernode& child, const Supernode& parent) {
+void BlockCholesky::add_update(const Supernode& child, const Supernode& parent, const Range& range) {
   const int* target = symbolic_.row_in_parent().data() + child.first_row + child.width;
   const int count = child.rows_below(), ld = 6 * count;
+  const auto place_of = [&](int row) {
+    return static_cast<int>(std::lower_bound(target, target + count, row) - target);
+  };
+  const int first_row = place_of(range.first_row), last_row = place_of(range.last_row);
+  const int last_column = place_of(range.last_column);
   const double* update = updates_.data() + child.update_offset;
-  for (int column = 0; column < count; ++column) {
+  for (int column = place_of(range.first_column); column < last_column; ++column) {
     const int to = target[column];
     const bool in_panel = to < parent.width;
     const int to_ld = in_panel ? 6 * parent.row_count : 6 * parent.rows_below();
     const int shift = in_panel ? 0 : parent.width;
     double* block = in_panel ? panels_.data() + parent.panel_offset : updates_.data() + parent.update_offset;
     block += 6L * (to - shift) * to_ld;
-    for (int row = column; row < count;) {
+    for (int row = std::max(first_row, column); row < last_row;) {
       int end = row + 1;
-      while (end < count && target[end] == target[end - 1] + 1) ++end;
+      while (end < last_row && target[end] == target[end - 1] + 1) ++end;
       const double* from = update + 6L * column * ld + 6 * row;
       double* into = block + 6 * (target[row] - shift);
       const int length = 6 * (end - row);
@@ -110,6 +115,35 @@ void BlockCholesky::add_update(const Supernode& child, const Supernode& parent) 
       row = end;
     }
   }
+}
+
+void BlockCholesky::add_updates(int supernode, const Range& range) {
+  const Supernode& s = symbolic_.supernodes()[supernode];
+  for (int child : symbolic_.children(supernode)) add_update(symbolic_.supernodes()[child], s, range);
+}
+
+void BlockCholesky::gather(int supernode, int column_strip) {
+  const Supernode& s = symbolic_.supernodes()[supernode];
+  const FrontStrips strips(s);
+  add_updates(supernode, {0, s.row_count, strips.begin(column_strip), strips.end(column_strip)});
+}
+
+void BlockCholesky::make_update(int supernode, int row_strip, int column_strip) {
+  const Supernode& s = symbolic_.supernodes()[supernode];
+  const FrontStrips strips(s);
+  const Range range{strips.begin(row_strip), strips.end(row_strip), strips.begin(column_strip),
+                    strips.end(column_strip)};
+  const long ld = 6 * s.rows_below();
+  double* tile = updates_.data() + s.update_offset + 6L * (range.first_row - s.width);
+  for (long c = 6L * (range.first_column - s.width); c < 6L * (range.last_column - s.width); ++c)
+    std::fill_n(tile + c * ld, 6 * (range.last_row - range.first_row), 0.0);
+  add_updates(supernode, range);
+  front(supernode).subtract_panel_product(row_strip, column_strip);
+}
+
+FrontTiles BlockCholesky::front(int supernode) {
+  const Supernode& s = symbolic_.supernodes()[supernode];
+  return {s, panels_.data() + s.panel_offset, updates_.data() + s.update_offset};
 }
 
 bool BlockCholesky::factor_panel(const Supernode& s) {
@@ -138,7 +172,7 @@ bool BlockCholesky::factor(int branch_index) {
   for (int i = branch.first; i <= branch.last; ++i) {
     const Supernode& s = symbolic_.supernodes()[i];
     std::fill_n(updates_.begin() + s.update_offset, 36L * s.rows_below() * s.rows_below(), 0.0);
-    for (int child : symbolic_.children(i)) add_update(symbolic_.supernodes()[child], s);
+    add_updates(i, {0, s.row_count, 0, s.row_count});
     if (!factor_panel(s)) return false;
   }
   return true;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "solver/block_symbolic.h"
+#include "solver/front_tiles.h"
 
 namespace cleave {
 
@@ -41,6 +42,11 @@ class BlockCholesky {
 
   // Factors the supernodes of one branch, after its child branches. False when a pivot is not positive.
   bool factor(int branch);
+  // The same of a branch that is one supernode, in pieces (front_tiles.h): adds what its children left to strips of columns
+  // of its panel; makes tiles of its update matrix once the panel is factored.
+  void gather(int supernode, int column_strip);
+  void make_update(int supernode, int row_strip, int column_strip);
+  FrontTiles front(int supernode);
 
   // x <- L^-1 x and x <- L^-T x, x in position order, 6 doubles each. One branch after its child branches, or after
   // its parent; each writes to its own places of x alone, and forward leaves what it adds above to its parent.
@@ -61,7 +67,12 @@ class BlockCholesky {
 
  private:
   int row_of_block(int first_node, int second_node) const;
-  void add_update(const Supernode& child, const Supernode& parent);
+  // Of a front, in blocks.
+  struct Range {
+    int first_row, last_row, first_column, last_column;
+  };
+  void add_update(const Supernode& child, const Supernode& parent, const Range& range);
+  void add_updates(int supernode, const Range& range);
   bool factor_panel(const Supernode& s);
 
   BlockSymbolic symbolic_;

@@ -184,15 +184,28 @@ void BlockMatrix::assemble(const WeightedRows& rows, int branch) {
   }
 }
 
+void BlockMatrix::add_late(int slot) {
+  if (!late_any_[slot]) return;
+  const BlockCholesky::Place& place = late_places_[slot];
+  add_block(cholesky_.panels() + place.offset, place.leading_dimension, late_blocks_.data() + 36L * slot, 6,
+            false);
+}
+
 bool BlockMatrix::factor(int branch) {
-  for (int k = late_first_[branch]; k < late_first_[branch + 1]; ++k) {
-    const int slot = late_slots_[k];
-    if (!late_any_[slot]) continue;
-    const BlockCholesky::Place& place = late_places_[slot];
-    add_block(cholesky_.panels() + place.offset, place.leading_dimension, late_blocks_.data() + 36L * slot, 6,
-              false);
-  }
+  for (int k = late_first_[branch]; k < late_first_[branch + 1]; ++k) add_late(late_slots_[k]);
   return cholesky_.factor(branch);
+}
+
+void BlockMatrix::gather(int branch, int column_strip) {
+  const int supernode = cholesky_.symbolic().branches()[branch].last;
+  const Supernode& s = cholesky_.symbolic().supernodes()[supernode];
+  const FrontStrips strips(s);
+  for (int k = late_first_[branch]; k < late_first_[branch + 1]; ++k) {
+    const BlockCholesky::Place& place = late_places_[late_slots_[k]];
+    const long column = (place.offset - s.panel_offset) / (6L * place.leading_dimension);
+    if (column >= strips.begin(column_strip) && column < strips.end(column_strip)) add_late(late_slots_[k]);
+  }
+  cholesky_.gather(supernode, column_strip);
 }
 
 void BlockMatrix::assemble(const WeightedRows& rows) {

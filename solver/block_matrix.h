@@ -48,6 +48,9 @@ class BlockMatrix {
   void assemble(const WeightedRows& rows, int branch);
   // After assembly of all branches and factorisation of the child branches. False when a pivot is not positive.
   bool factor(int branch);
+  // The same of a branch that is one supernode, in pieces; this one begins a strip of columns of its panel, the others are
+  // those of cholesky().
+  void gather(int branch, int column_strip);
   // Of all branches.
   void assemble(const WeightedRows& rows);
   bool factor();
@@ -67,6 +70,7 @@ class BlockMatrix {
   void number(const PreparedStep& step);
   void list_edges(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
   void place_bodies();
+  void add_late(int slot);
   void place_groups(const PreparedStep& step, std::span<const int> local_of_body,
                     std::span<const int> groups);
 

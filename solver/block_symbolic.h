@@ -1,10 +1,9 @@
 // Symbolic analysis of a sparse symmetric matrix of 6x6 blocks: elimination order, elimination tree,
 // supernodes.
 //
-// Nodes are bodies, an off-diagonal block stands for a pair of bodies that share a row. The order reduces
-// fill (approximate minimum degree, Amestoy, Davis, Duff 1996); columns with (nearly) the same structure are
-// joined into supernodes, so that the numeric factorisation runs on dense panels. Positions are places in the
-// elimination order; all indices below are in blocks.
+// Nodes are bodies, an off-diagonal block stands for a pair of bodies that share a row. Columns of the factor
+// (column_structure.h) with (nearly) the same rows are joined into supernodes, so that the numeric factorisation runs on
+// dense panels. Positions are places in the elimination order; all indices below are in blocks.
 //
 // Stages: nodes may carry a stage number; nodes of a lower stage are eliminated before those of a higher one, and
 // supernodes never span two. Where the stages are parts and the cut between them (a vertex cover), or the nodes of a
@@ -20,6 +19,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/column_structure.h"
 #include "solver/memory_count.h"
 
 namespace cleave {
@@ -36,6 +36,8 @@ struct Supernode {
   long panel_offset = 0;     // in doubles, into the factor
   long update_offset = 0;    // in doubles, into the update stack
   int rows_below() const { return row_count - width; }
+  // About as many multiplications and additions as its elimination takes, padding included; too many where it is wide.
+  double flops() const { return 216.0 * width * row_count * row_count; }
 };
 
 // Supernodes first .. last of one stage; `last` is the root of the subtree. What its columns add to positions above it
@@ -60,9 +62,9 @@ class BlockSymbolic {
                std::span<const int> stage_of_node = {}, int stage_count = 1, long most_blocks = kAnyBlocks);
   static constexpr long kAnyBlocks = std::numeric_limits<long>::max();
 
-  int node_count() const { return node_count_; }
-  std::span<const int> position_of_node() const { return position_of_node_; }
-  std::span<const int> node_at_position() const { return node_at_position_; }
+  int node_count() const { return columns_.node_count(); }
+  std::span<const int> position_of_node() const { return columns_.position_of_node(); }
+  std::span<const int> node_at_position() const { return columns_.node_at_position(); }
   std::span<const Supernode> supernodes() const { return supernodes_; }
   std::span<const int> supernode_at_position() const { return supernode_at_position_; }
   std::span<const int> rows() const { return rows_; }
@@ -85,7 +87,7 @@ class BlockSymbolic {
   int stage_count() const { return static_cast<int>(stage_flops_.size()); }
 
   // Blocks of the factor, padding aside, diagonal blocks whole; of as many columns as were analysed.
-  long block_count() const { return block_count_; }
+  long block_count() const { return columns_.block_count(); }
   void count(MemoryCount& memory) const;  // of the analysis itself
 
   long factor_size() const { return factor_size_; }  // doubles of all panels
@@ -95,11 +97,6 @@ class BlockSymbolic {
   double factor_flops(int stage) const { return stage_flops_[stage]; }
 
  private:
-  void build_adjacency(std::span<const std::pair<int, int>> edges);
-  void order(std::span<const int> stage_of_node);
-  void find_elimination_tree();
-  void postorder();
-  bool find_structures(long most_blocks);
   void find_supernodes(std::span<const int> stage_of_node, int stage_count);
   void list_rows();
   void find_branches();
@@ -107,12 +104,7 @@ class BlockSymbolic {
   void list_carries();
   void place_storage();
 
-  int node_count_ = 0;
-  std::vector<int> adjacency_first_, adjacency_;  // by node, both directions, ascending
-  std::vector<int> position_of_node_, node_at_position_;
-  std::vector<int> parent_;  // elimination tree by position
-  std::vector<long> column_first_;
-  std::vector<int> column_rows_;  // structure below the diagonal by position, ascending
+  ColumnStructure columns_;
   std::vector<Supernode> supernodes_;
   std::vector<int> supernode_at_position_;
   std::vector<int> rows_, row_in_parent_;
@@ -120,10 +112,10 @@ class BlockSymbolic {
   std::vector<int> branch_child_first_, branch_children_, carry_index_;
   std::vector<int> child_first_, children_;
   std::vector<double> stage_flops_;
-  long block_count_ = 0, factor_size_ = 0, update_size_ = 0, carry_size_ = 0;
-  std::vector<int> mark_, head_, next_, stack_;  // scratch
-  std::vector<long> true_blocks_;                // scratch: blocks of a supernode that are not padding
-  std::vector<double> subtree_flops_;            // scratch: by supernode, padding included
+  long factor_size_ = 0, update_size_ = 0, carry_size_ = 0;
+  std::vector<int> mark_;              // scratch
+  std::vector<long> true_blocks_;      // scratch: blocks of a supernode that are not padding
+  std::vector<double> subtree_flops_;  // scratch: by supernode, padding included
 };
 
 }  // namespace cleave

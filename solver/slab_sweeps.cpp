@@ -16,7 +16,7 @@ constexpr int kWordColors = 64;  // colours in one word of used_colors_
 
 }  // namespace
 
-void SlabSweeps::bind(const PreparedStep& step) {
+void SlabSweeps::bind(const PreparedStep& step, ParallelTasks& tasks) {
   assert(step.set().axes().empty());
   step_ = &step;
   measure_distances(step);
@@ -24,7 +24,7 @@ void SlabSweeps::bind(const PreparedStep& step) {
   color_groups(step);
   sort_groups(step);
   assign_places(step);
-  pack_rows(step);
+  tasks.run(set_count(), [&](int set) { pack_rows(step, set); });
   build_graph();
 }
 
@@ -182,13 +182,14 @@ void SlabSweeps::assign_places(const PreparedStep& step) {
   impulse_.resize(place);
 }
 
-void SlabSweeps::pack_rows(const PreparedStep& step) {
+void SlabSweeps::pack_rows(const PreparedStep& step, int set) {
   const StepProblem& p = step.problem();
   const auto bound = [](double x) {
     constexpr double kMost = std::numeric_limits<float>::max();
     return static_cast<float>(std::clamp(x, -kMost, kMost));
   };
-  for (const int g : groups_) {
+  for (int i = group_first_[color_first_[set]]; i < group_first_[color_first_[set + 1]]; ++i) {
+    const int g = groups_[i];
     const RowGroup& group = step.groups()[g];
     for (int k = 0; k < group.row_count; ++k) {
       const int r = group.first_row + k;
@@ -209,37 +210,54 @@ void SlabSweeps::pack_rows(const PreparedStep& step) {
   }
 }
 
-void SlabSweeps::take_in(std::span<const double> impulse, std::span<const double> v) {
-  for (std::size_t body = 0; body < place_of_body_.size(); ++body) {
+// for_body(body) of all bodies and for_group(g) of all groups.
+template <class ForBody, class ForGroup>
+void SlabSweeps::run_over_chunks(ParallelTasks& tasks, const ForBody& for_body,
+                                 const ForGroup& for_group) const {
+  const auto bodies = step_->body_chunks(), groups = step_->group_chunks();
+  const int body_tasks = static_cast<int>(bodies.size());
+  tasks.run(body_tasks + static_cast<int>(groups.size()), [&](int i) {
+    if (i < body_tasks) {
+      for (int body = bodies[i].first; body < bodies[i].last; ++body) for_body(body);
+    } else {
+      for (int g = groups[i - body_tasks].first; g < groups[i - body_tasks].last; ++g) for_group(g);
+    }
+  });
+}
+
+void SlabSweeps::take_in(std::span<const double> impulse, std::span<const double> v, ParallelTasks& tasks) {
+  const auto take_body = [&](int body) {
     SlabBody& own = bodies_[place_of_body_[body]];
     own = {};
     for (int c = 0; c < 6; ++c) own.velocity[c] = static_cast<float>(v[6 * body + c]);
-  }
-  const auto groups = step_->groups();
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    for (int k = 0; k < groups[g].row_count; ++k)
-      impulse_[place_of_group_[g] + k] = static_cast<float>(impulse[groups[g].first_row + k]);
-  }
+  };
+  const auto take_group = [&](int g) {
+    const RowGroup& group = step_->groups()[g];
+    for (int k = 0; k < group.row_count; ++k)
+      impulse_[place_of_group_[g] + k] = static_cast<float>(impulse[group.first_row + k]);
+  };
+  run_over_chunks(tasks, take_body, take_group);
 }
 
 // What is at a bound there is at the bound here, to the last digit.
-void SlabSweeps::give_out(std::span<double> impulse, std::span<double> v) const {
-  for (std::size_t body = 0; body < place_of_body_.size(); ++body) {
+void SlabSweeps::give_out(std::span<double> impulse, std::span<double> v, ParallelTasks& tasks) const {
+  const auto give_body = [&](int body) {
     const SlabBody& own = bodies_[place_of_body_[body]];
     for (int c = 0; c < 6; ++c) v[6 * body + c] = own.velocity[c];
-  }
-  const auto groups = step_->groups();
+  };
   const StepProblem& p = step_->problem();
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    for (int k = 0; k < groups[g].row_count; ++k) {
+  const auto give_group = [&](int g) {
+    const RowGroup& group = step_->groups()[g];
+    for (int k = 0; k < group.row_count; ++k) {
       const SlabRow& row = rows_[place_of_group_[g] + k];
       const float found = impulse_[place_of_group_[g] + k];
-      const int r = groups[g].first_row + k;
+      const int r = group.first_row + k;
       impulse[r] = found <= row.lower()   ? p.lower[r]
                    : found >= row.upper() ? p.upper[r]
                                           : std::clamp<double>(found, p.lower[r], p.upper[r]);
     }
-  }
+  };
+  run_over_chunks(tasks, give_body, give_group);
 }
 
 void SlabSweeps::run(int sweeps, std::span<double> impulse, std::span<double> v, ParallelTasks& tasks) {
@@ -251,14 +269,14 @@ void SlabSweeps::run(int sweeps, std::span<double> impulse, std::span<double> v,
                           impulse_.data(),
                           bodies_.data(),
                           static_cast<int>(place_of_body_.size())};
-  take_in(impulse, v);
+  take_in(impulse, v, tasks);
   tasks.run(Stage::predict, graph_, [&](int task) {
     if (task / set_count() >= sweeps) return;
     check_stop(tasks.stop());
     const int set = task % set_count();
     for (int color = 0; color < color_count(set); ++color) visit_groups(arrays, groups_of(set, color));
   });
-  give_out(impulse, v);
+  give_out(impulse, v, tasks);
 }
 
 }  // namespace cleave

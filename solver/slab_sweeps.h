@@ -31,7 +31,7 @@ class SlabSweeps {
   static constexpr int kMostSweeps = 5;  // of one run
 
   // Of a problem without turned boxes, which must stay as it is for run().
-  void bind(const PreparedStep& step);
+  void bind(const PreparedStep& step, ParallelTasks& tasks);
 
   // impulse (m) and v = v0 + M^-1 J^T impulse (n, 6) are updated in place, v to single precision; impulses at a bound
   // are exactly there. Ends with SolveStopped where tasks say so.
@@ -54,9 +54,11 @@ class SlabSweeps {
   void color_groups(const PreparedStep& step);
   void sort_groups(const PreparedStep& step);
   void assign_places(const PreparedStep& step);
-  void pack_rows(const PreparedStep& step);
-  void take_in(std::span<const double> impulse, std::span<const double> v);
-  void give_out(std::span<double> impulse, std::span<double> v) const;
+  void pack_rows(const PreparedStep& step, int set);
+  void take_in(std::span<const double> impulse, std::span<const double> v, ParallelTasks& tasks);
+  void give_out(std::span<double> impulse, std::span<double> v, ParallelTasks& tasks) const;
+  template <class ForBody, class ForGroup>
+  void run_over_chunks(ParallelTasks& tasks, const ForBody& for_body, const ForGroup& for_group) const;
   int set_of_gap(int gap) const;
   void build_graph();
 

@@ -2,6 +2,7 @@
 
 #include <camd.h>
 #include <hdf5.h>
+#include <metis.h>
 #include <omp.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -92,6 +93,7 @@ std::vector<std::pair<std::string, std::string>> library_versions() {
       {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"suitesparse", dotted(SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION, SUITESPARSE_SUBSUB_VERSION)},
       {"camd", dotted(CAMD_MAIN_VERSION, CAMD_SUB_VERSION, CAMD_SUBSUB_VERSION)},
+      {"metis", dotted(METIS_VER_MAJOR, METIS_VER_MINOR, METIS_VER_SUBMINOR)},
       {"hdf5", dotted(static_cast<int>(hdf5[0]), static_cast<int>(hdf5[1]), static_cast<int>(hdf5[2]))},
       {"openmp", std::to_string(_OPENMP)},
       {"cli11", CLI11_VERSION}};

@@ -15,15 +15,32 @@ constexpr std::size_t kMostTextBytes = 1 << 16;  // a message of an object heade
 
 Hdf5Handle type_of_attribute(const Hdf5Handle& attribute) { return {H5Aget_type(attribute.id()), H5Tclose}; }
 
+// Numbers whose every bit stands where the processor's have it, in either order of bytes; texts with an end and
+// characters that there are.
+bool is_ordinary(hid_t type) {
+  if (H5Tget_class(type) == H5T_FLOAT)
+    return H5Tequal(type, H5T_IEEE_F64LE) > 0 || H5Tequal(type, H5T_IEEE_F32LE) > 0 ||
+           H5Tequal(type, H5T_IEEE_F64BE) > 0 || H5Tequal(type, H5T_IEEE_F32BE) > 0;
+  if (H5Tget_class(type) == H5T_INTEGER) return H5Tget_precision(type) == 8 * H5Tget_size(type);
+  if (H5Tget_class(type) == H5T_STRING) {
+    const H5T_str_t padding = H5Tget_strpad(type);
+    const H5T_cset_t characters = H5Tget_cset(type);
+    return (padding == H5T_STR_NULLTERM || padding == H5T_STR_NULLPAD || padding == H5T_STR_SPACEPAD) &&
+           (characters == H5T_CSET_ASCII || characters == H5T_CSET_UTF8);
+  }
+  return true;
+}
+
 std::string type_text(hid_t type) {
-  const std::string bits = std::to_string(8 * H5Tget_size(type)) + "-bit ";
+  const std::string bits =
+      std::to_string(8 * H5Tget_size(type)) + (is_ordinary(type) ? "-bit " : "-bit unusual ");
   switch (H5Tget_class(type)) {
     case H5T_FLOAT:
       return bits + "float";
     case H5T_INTEGER:
       return bits + (H5Tget_sign(type) == H5T_SGN_NONE ? "unsigned integer" : "signed integer");
     case H5T_STRING:
-      return "text";
+      return is_ordinary(type) ? "text" : "unusual text";
     case H5T_REFERENCE:
       return "object reference";
     default:
@@ -33,13 +50,14 @@ std::string type_text(hid_t type) {
 
 bool matches(hid_t type, const Hdf5Element& element) {
   if (H5Tget_class(type) != element.type_class || H5Tget_size(type) != element.size) return false;
+  if (!is_ordinary(type)) return false;
   return element.type_class != H5T_INTEGER || (H5Tget_sign(type) != H5T_SGN_NONE) == element.is_signed;
 }
 
 // Types that hold every value that the element asked for can have, or more; see the head of the header.
 bool converts(hid_t type, const Hdf5Element& element) {
   const std::size_t size = H5Tget_size(type);
-  if (H5Tget_class(type) != element.type_class) return false;
+  if (H5Tget_class(type) != element.type_class || !is_ordinary(type)) return false;
   if (element.type_class == H5T_FLOAT) return size == 4 && element.size == 8;
   return H5Tget_sign(type) != H5T_SGN_NONE && (size == 4 || size == 8);
 }
@@ -196,7 +214,7 @@ void Hdf5Reader::read_attribute(const Hdf5Handle& attribute, const std::string& 
 void Hdf5Reader::attribute(const std::string& name, std::string& value) const {
   const Hdf5Handle attribute = open_attribute(name);
   const Hdf5Handle type = type_of_attribute(attribute);
-  if (H5Tget_class(type.id()) != H5T_STRING)
+  if (H5Tget_class(type.id()) != H5T_STRING || !is_ordinary(type.id()))
     fail("type of attribute " + full(name) + " = " + type_text(type.id()) + ", allowed: text");
   if (H5Tis_variable_str(type.id()) > 0) {
     char* text = nullptr;

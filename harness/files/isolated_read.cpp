@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <new>
 #include <stdexcept>
 #include <string_view>
@@ -20,8 +21,10 @@ namespace cleave {
 namespace {
 
 // The first byte that a child sends says what follows.
-constexpr char kValue = 'v', kError = 'e';
+constexpr char kValue = 'v', kError = 'e', kErrorWithoutMemory = 'm';
 constexpr int kChildFailed = 1;
+constexpr std::size_t kRoomBytes =
+    4 << 20;  // with less left, a library's error may be that it found no memory
 
 [[noreturn]] void fail(const std::string& subject, const std::string& text) {
   throw std::invalid_argument(subject + ": " + text);
@@ -63,6 +66,12 @@ void enter_child(const ReadLimits& limits) {
   for (const int printed : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, printed);
 }
 
+bool has_room() {
+  void* const room = std::malloc(kRoomBytes);
+  std::free(room);
+  return room != nullptr;
+}
+
 // What is sent ends the child: no exit handler of the parent runs in it.
 [[noreturn]] void serve(int pipe, const std::function<std::string()>& read) {
   char kind = kValue;
@@ -70,7 +79,7 @@ void enter_child(const ReadLimits& limits) {
   try {
     bytes = read();
   } catch (const std::exception& error) {
-    kind = kError;
+    kind = has_room() ? kError : kErrorWithoutMemory;
     bytes = error.what();
   }
   const bool sent = write_all(pipe, {&kind, 1}) && write_all(pipe, bytes);
@@ -95,6 +104,16 @@ int wait_for(pid_t child) {
   return status;
 }
 
+// Whether less is allowed (ulimit -v) than a child may use.
+bool is_short_of_memory(const ReadLimits& limits) {
+  const std::size_t allowed = allowed_address_space_bytes();
+  return allowed != 0 && allowed < address_space_bytes() + limits.memory_bytes;
+}
+
+std::string allowed_memory_text() {
+  return std::to_string(allowed_address_space_bytes() / 1024) + " kB of memory allowed";
+}
+
 void check_end(const std::string& subject, const ReadLimits& limits, int status) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
@@ -105,10 +124,8 @@ void check_end(const std::string& subject, const ReadLimits& limits, int status)
   const std::string crash = std::string("the HDF5 library crashed while reading it") +
                             (name == nullptr ? "" : std::string(" (SIG") + name + ")");
   // The library crashes where it finds no memory too.
-  const std::size_t allowed = allowed_address_space_bytes();
-  if (allowed != 0 && allowed < address_space_bytes() + limits.memory_bytes)
-    fail(subject,
-         "cannot be read with " + std::to_string(allowed / 1024) + " kB of memory allowed: " + crash);
+  if (is_short_of_memory(limits))
+    fail(subject, "cannot be read with " + allowed_memory_text() + ": " + crash);
   fail(subject, "damaged: " + crash);
 }
 
@@ -132,9 +149,11 @@ std::string read_in_child(const std::string& subject, const ReadLimits& limits,
   if (child < 0) fail(subject, std::string("cannot be read: fork: ") + ::strerror(reason));
   check_end(subject, limits, wait_for(child));
   if (bytes.empty()) fail(subject, "damaged: the HDF5 library ended the reading of it");
-  const bool is_error = bytes.front() != kValue;
+  const char kind = bytes.front();
   bytes.erase(0, 1);
-  if (is_error) throw std::invalid_argument(bytes);
+  if (kind == kErrorWithoutMemory && is_short_of_memory(limits))
+    fail(subject, "cannot be read with " + allowed_memory_text());
+  if (kind != kValue) throw std::invalid_argument(bytes);
   return bytes;
 }
 

@@ -34,11 +34,9 @@ void BranchKernel::request_memory(const PreparedStep& step, ParallelTasks& tasks
   MemoryCount memory;
   matrix_.count(memory);
   separators_.count(memory);
-  for (const TaskGraph* graph :
-       {&assembly_graph_, &local_graph_, &interface_graph_, &forward_graph_, &backward_graph_})
-    graph->count(memory);
-  memory.add_grown(stages_.of_body, local_branches_, interface_branches_, waits_, task_of_branch_, places_,
-                   factored_);
+  for (const TaskGraph* graph : {&assembly_graph_, &forward_graph_, &backward_graph_}) graph->count(memory);
+  for (const FactorTasks* factor : {&local_tasks_, &interface_tasks_}) factor->count(memory);
+  memory.add_grown(stages_.of_body, waits_, places_, factored_);
   memory.add<double>(12, step.groups().size());
   memory.add<double>(6, step.body_count());
   if (!step.set().axes().empty()) memory.add<double>(12, step.row_count());
@@ -56,31 +54,15 @@ bool BranchKernel::rebind(const PreparedStep& step, const Parts&, ParallelTasks&
 
 // Branches of the interface come after the others, as stages of columns of their own.
 void BranchKernel::list_tasks() {
-  const auto branches = matrix_.cholesky().symbolic().branches();
+  const BlockSymbolic& symbolic = matrix_.cholesky().symbolic();
+  const auto branches = symbolic.branches();
   const int count = static_cast<int>(branches.size());
   factored_.resize(count);
-  local_branches_.clear();
-  interface_branches_.clear();
-  task_of_branch_.resize(count);
-  const auto is_local = [&](int b) { return branches[b].stage < stages_.first_of_interface; };
-  for (int b = 0; b < count; ++b) {
-    std::vector<int>& list = is_local(b) ? local_branches_ : interface_branches_;
-    task_of_branch_[b] = static_cast<int>(list.size());
-    list.push_back(b);
-  }
-  const auto build = [&](TaskGraph& graph, const std::vector<int>& list) {
-    waits_.clear();
-    places_.clear();
-    for (const int b : list) {
-      places_.push_back(branches[b].place);
-      const int parent = branches[b].parent;
-      if (parent >= 0 && is_local(parent) == is_local(b))
-        waits_.emplace_back(task_of_branch_[b], task_of_branch_[parent]);
-    }
-    graph.build(static_cast<int>(list.size()), waits_, places_);
-  };
-  build(local_graph_, local_branches_);
-  build(interface_graph_, interface_branches_);
+  std::vector<int> local, interface;
+  for (int b = 0; b < count; ++b)
+    (branches[b].stage < stages_.first_of_interface ? local : interface).push_back(b);
+  local_tasks_.list(symbolic, local);
+  interface_tasks_.list(symbolic, interface);
   waits_.clear();
   places_.clear();
   for (int b = 0; b < count; ++b) {
@@ -104,14 +86,8 @@ bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
   }
   tasks.run(Stage::assemble, assembly_graph_, [&](int b) { matrix_.assemble(system_.rows(), b); });
   std::ranges::fill(factored_, 1);
-  const auto factor_branch = [&](int b) {
-    for (const int child : matrix_.cholesky().symbolic().child_branches(b)) {
-      if (!factored_[child]) factored_[b] = 0;
-    }
-    if (factored_[b]) factored_[b] = matrix_.factor(b);
-  };
-  tasks.run(Stage::factor_local, local_graph_, [&](int t) { factor_branch(local_branches_[t]); });
-  tasks.run(Stage::factor_interface, interface_graph_, [&](int t) { factor_branch(interface_branches_[t]); });
+  local_tasks_.run(Stage::factor_local, matrix_, factored_, tasks);
+  interface_tasks_.run(Stage::factor_interface, matrix_, factored_, tasks);
   return std::ranges::find(factored_, 0) == factored_.end();
 }
 

@@ -4,8 +4,8 @@
 //     H dv = f_v + J^T D f_r,     dlambda = D (f_r - J dv),
 //
 // dealt out in branches of its elimination tree (block_symbolic.h). Assembly has no order; a branch is factored after its
-// child branches, and so goes forward substitution; back substitution goes from the root. A kernel only says in what
-// order bodies are eliminated.
+// child branches, in tiles where it is large (factor_tasks.h), and so goes forward substitution; back substitution goes
+// from the root. A kernel only says in what order bodies are eliminated.
 #pragma once
 
 #include <span>
@@ -13,6 +13,7 @@
 
 #include "solver/block_matrix.h"
 #include "solver/body_system.h"
+#include "solver/factor_tasks.h"
 #include "solver/kernels/kernel.h"
 #include "solver/separators.h"
 #include "solver/task_graph.h"
@@ -56,10 +57,9 @@ class BranchKernel : public Kernel {
   BodySystem system_;
   BlockMatrix matrix_;
   int interface_bodies_ = 0;
-  std::vector<int> local_branches_, interface_branches_;
-  TaskGraph assembly_graph_, local_graph_, interface_graph_, forward_graph_, backward_graph_;
+  FactorTasks local_tasks_, interface_tasks_;
+  TaskGraph assembly_graph_, forward_graph_, backward_graph_;
   std::vector<std::pair<int, int>> waits_;  // scratch
-  std::vector<int> task_of_branch_;         // scratch
   std::vector<double> places_;              // scratch
   std::vector<char> factored_;
   std::vector<double> x_;  // (n, 6) by position

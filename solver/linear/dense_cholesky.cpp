@@ -72,7 +72,7 @@ void DenseCholesky::count(int size, MemoryCount& memory) {
   memory.add<double>(kPanelRows, panels);
   const std::uint64_t operations = blocks * (blocks + 1) * (blocks + 2) / 6;
   if (operations > std::numeric_limits<int>::max() / 3) return memory.add<char>(kNoMemoryLimit);
-  constexpr std::uint64_t kOperationBytes = 2 * sizeof(Operation) + 2 * 3 * sizeof(std::pair<int, int>) +
+  constexpr std::uint64_t kOperationBytes = 2 * sizeof(TileOperation) + 2 * 3 * sizeof(std::pair<int, int>) +
                                             2 * sizeof(double) + 2 * 6 * sizeof(int) + 2 * sizeof(double);
   memory.add<char>(operations, kOperationBytes);
 }
@@ -130,42 +130,11 @@ void DenseCholesky::update(int step, int row, int column) {
   }
 }
 
-// The operations in an order in which each comes after all that it needs, and what it needs: the last operation on its
-// own block before it, and those that finished the blocks it reads. The block that the next step begins with comes first
-// in every step, and its factorisation next, so that it is long done when the solves below it, last in the step, are
-// reached.
-DenseCholesky::Schedule::Schedule(int blocks) : last_on_block(blocks * (blocks + 1) / 2, -1) {
-  for (int step = -1; step < blocks - 1; ++step) {
-    const int next = step + 1;
-    if (step >= 0) list({step, next, next});
-    list({next, next, next});
-    for (int column = next; column < blocks && step >= 0; ++column) {
-      for (int row = std::max(column, next + 1); row < blocks; ++row) list({step, row, column});
-    }
-    for (int row = next + 1; row < blocks; ++row) list({next, row, next});
-  }
-  graph.build(static_cast<int>(operations.size()), waits, places);
-}
-
-void DenseCholesky::Schedule::list(const Operation& operation) {
-  const auto [step, row, column] = operation;
-  const int index = static_cast<int>(operations.size());
-  const auto last = [this](int r, int c) -> int& { return last_on_block[r * (r + 1) / 2 + c]; };
-  const auto wait_for = [&](int earlier) {
-    if (earlier >= 0) waits.emplace_back(earlier, index);
-  };
-  wait_for(last(row, column));
-  if (column > step) {
-    wait_for(last(row, step));
-    if (row != column) wait_for(last(column, step));
-  } else if (row > step) {
-    wait_for(last(step, step));
-  }
-  last(row, column) = index;
-  operations.push_back(operation);
-  // Rows of blocks go round the threads, whatever their number: the fractions of multiples of the golden ratio.
-  constexpr double kGoldenRatio = 0.6180339887498949;
-  places.push_back(row * kGoldenRatio - std::floor(row * kGoldenRatio));
+DenseCholesky::Schedule::Schedule(int blocks) : tiles(blocks, blocks) {
+  std::vector<double> places;
+  for (std::size_t k = 0; k < tiles.operations().size(); ++k)
+    places.push_back(tiles.place(static_cast<int>(k)));
+  graph.build(static_cast<int>(tiles.operations().size()), tiles.waits(), places);
 }
 
 const DenseCholesky::Schedule& DenseCholesky::schedule() {
@@ -178,7 +147,7 @@ bool DenseCholesky::factor(ParallelTasks& tasks) {
   const Schedule& schedule = this->schedule();
   std::atomic<bool> positive = true;
   tasks.run(Stage::factor_interface, schedule.graph, [&](int index) {
-    const auto [step, row, column] = schedule.operations[index];
+    const auto [step, row, column] = schedule.tiles.operations()[index];
     check_stop(tasks.stop());
     if (!positive) return;
     if (column > step) {

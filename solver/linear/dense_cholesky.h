@@ -2,16 +2,8 @@
 //
 // The lower triangle is stored in row panels (dense_panel.h): panel p holds rows 24 p .. 24 p + 23 and their
 // columns up to the diagonal, so that factor and solves run on it without copies, in half the memory of a
-// square matrix. Rows beyond the size are rows of the identity. In square blocks of kBlock rows, step k
-//
-//     factors the diagonal block            A_kk = L_kk L_kk^T
-//     solves the blocks below it            L_ik = A_ik L_kk^-T
-//     updates what is right of it           A_ij -= L_ik L_jk^T,    k < j <= i
-//
-// (right-looking; Golub and Van Loan, Matrix Computations, section 4.2). On several threads the diagonal
-// block that the next step begins with is factored while the others are still being updated (look-ahead;
-// Strazdins 1998). Every block sees the same operations in the same order on any number of threads. The
-// inverse of each 8x8 diagonal block of L is stored in the place of the block.
+// square matrix. Rows beyond the size are rows of the identity. The blocks of kBlock rows are factored as
+// tile_schedule.h says. The inverse of each 8x8 diagonal block of L is stored in the place of the block.
 #pragma once
 
 #include <atomic>
@@ -22,6 +14,7 @@
 #include <vector>
 
 #include "solver/linear/panel_layout.h"
+#include "solver/linear/tile_schedule.h"
 #include "solver/parallel_tasks.h"
 
 namespace cleave {
@@ -67,21 +60,12 @@ class DenseCholesky {
     return std::size_t{kPanelRows * kPanelRows / 2} * static_cast<std::size_t>(p * (p + 1));
   }
 
-  // What a step does to one block. A diagonal block is factored, those below it are solved for, all others
-  // are updated.
-  struct Operation {
-    int step, row, column;
-  };
   // Of all sizes with the same number of blocks; stays once it is there, as the clock of a solve refers to it.
   struct Schedule {
     explicit Schedule(int blocks);
-    void list(const Operation& operation);
 
-    std::vector<Operation> operations;
+    TileSchedule tiles;
     TaskGraph graph;
-    std::vector<std::pair<int, int>> waits;
-    std::vector<double> places;
-    std::vector<int> last_on_block;  // of the operations so far, by place in the triangle
   };
   const Schedule& schedule();
 

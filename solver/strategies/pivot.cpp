@@ -43,7 +43,7 @@ class Pivot : public Strategy {
   bool run(SolveState& state) override {
     {
       StageTimer timer(state.tasks.clock(), Stage::predict);
-      predictor_.bind(*state.step);
+      predictor_.bind(*state.step, state.tasks);
     }
     clamp(state);
     warm_state_ = state.state;
@@ -79,9 +79,10 @@ class Pivot : public Strategy {
   static void clamp(SolveState& state) {
     StageTimer timer(state.tasks.clock(), Stage::predict);
     const StepProblem& problem = state.step->problem();
-    for (std::size_t r = 0; r < state.impulse.size(); ++r) {
-      state.impulse[r] = std::clamp(state.impulse[r], problem.lower[r], problem.upper[r]);
-    }
+    state.run_over_rows([&](int first, int last, int) {
+      for (int r = first; r < last; ++r)
+        state.impulse[r] = std::clamp(state.impulse[r], problem.lower[r], problem.upper[r]);
+    });
     state.update_velocity();
     state.states_from_impulses();
   }

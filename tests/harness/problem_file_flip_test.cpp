@@ -129,6 +129,23 @@ TEST_F(FlippedProblemFile, FilesOfOthersAreReadAsUnchecked) {
   }
 }
 
+// A text's type is its class, a byte with padding and characters, and its size.
+TEST_F(FlippedProblemFile, TextsOfUnusualTypesAreRefused) {
+  write_problem_file(path_, file_);
+  const std::string bytes = read_text(path_), type("\x13\x11\0\0\x09\0\0\0", 8);
+  ASSERT_EQ(file_.scene.size(), 9u);
+  const std::size_t scene = bytes.find(type, bytes.find("scene"));
+  ASSERT_NE(scene, std::string::npos);
+  for (const char flipped : {'\x02', '\x20'}) {
+    std::string damaged = bytes;
+    damaged[scene + 1] ^= flipped;
+    std::ofstream(path_, std::ios::binary) << damaged;
+    EXPECT_NE(error_of(path_).find("type of attribute scene = unusual text, allowed: text"),
+              std::string::npos)
+        << error_of(path_);
+  }
+}
+
 // What h5py writes of a Python string lies in a heap; pointers into it are followed by the library alone.
 TEST_F(FlippedProblemFile, DamagedHeapOfTextsEndsInALine) {
   write_unchecked(path_, file_, [](const Hdf5Writer&, const std::string& name) { return name == "scene"; });

@@ -28,15 +28,15 @@ class HostileProblemFile : public ::testing::Test {
   }
 
   // A dataset rhs of the sample's 14 rows, without data, with properties of its own.
-  std::string error_with_rhs(const std::function<void(hid_t properties)>& set) const {
+  std::string error_with_rhs(const std::function<void(hid_t properties)>& set,
+                             hid_t type = H5T_IEEE_F64LE) const {
     return error_with("rhs", [&](hid_t file) {
       const hsize_t rows = 14;
       const Hdf5Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose);
       const Hdf5Handle properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
       set(properties.id());
       const Hdf5Handle rhs(
-          H5Dcreate2(file, "rhs", H5T_IEEE_F64LE, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT),
-          H5Dclose);
+          H5Dcreate2(file, "rhs", type, space.id(), H5P_DEFAULT, properties.id(), H5P_DEFAULT), H5Dclose);
       ASSERT_TRUE(rhs.valid());
     });
   }
@@ -89,6 +89,17 @@ TEST_F(HostileProblemFile, ReferencesAreNoValues) {
     H5Awrite(scene.id(), H5T_STD_REF_OBJ, &to);
   };
   expect(error_with("scene", reference), "type of attribute scene = object reference, allowed: text");
+}
+
+TEST_F(HostileProblemFile, NumbersOfUnusualBitsAreNotRead) {
+  const Hdf5Handle shifted(H5Tcopy(H5T_IEEE_F64LE), H5Tclose), narrow(H5Tcopy(H5T_STD_I64LE), H5Tclose);
+  ASSERT_GE(H5Tset_ebias(shifted.id(), 1022), 0);
+  ASSERT_GE(H5Tset_precision(narrow.id(), 40), 0);
+  const auto nothing = [](hid_t) {};
+  expect(error_with_rhs(nothing, shifted.id()), "type of rhs = 64-bit unusual float, allowed: 64-bit float");
+  expect(error_with_rhs(nothing, narrow.id()),
+         "type of rhs = 64-bit unusual signed integer, allowed: 64-bit float");
+  EXPECT_EQ(error_with_rhs(nothing, H5T_IEEE_F64BE), "");
 }
 
 TEST_F(HostileProblemFile, DataOfOtherFilesAreNotRead) {

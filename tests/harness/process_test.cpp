@@ -193,6 +193,19 @@ TEST(LittleMemory, IsALineWhereverItEnds) {
   EXPECT_GT(lines, 0);
 }
 
+TEST(LittleMemory, CallsNoFileDamaged) {
+  const Shell shell;
+  ASSERT_EQ(shell.run("$cleave record --scene rock_pile --bodies 12 --at 60 --out $d/in").exit_code, 0);
+  int lines = 0;
+  for (int kbytes = 30000; kbytes <= 38000; kbytes += 100) {
+    const ProgramResult verified =
+        shell.run("ulimit -v " + std::to_string(kbytes) + "; exec $cleave verify $d/in");
+    EXPECT_EQ(verified.err.find("damaged"), std::string::npos) << kbytes << " kB: " << verified.err;
+    lines += verified.err.find("kB of memory allowed") != std::string::npos;
+  }
+  EXPECT_GT(lines, 0);
+}
+
 // A command that has begun to write rows.
 struct Running {
   Running(const fs::path& out, const Arguments& arguments, int lines) : csv(out / "steps.csv") {

@@ -29,7 +29,7 @@ struct Sweeps {
     impulse.resize(step.row_count(), 0.0);
     velocity.resize(6 * static_cast<std::size_t>(step.body_count()));
     step.velocity(impulse, velocity);
-    sweeps.bind(step);
+    sweeps.bind(step, tasks);
   }
   void run(int count) { sweeps.run(count, impulse, velocity, tasks); }
 

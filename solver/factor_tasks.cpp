@@ -1,0 +1,121 @@
+#include "solver/factor_tasks.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace cleave {
+namespace {
+
+// What takes a core about a tenth of a millisecond.
+constexpr double kLeastTiledFlops = 4e6;
+
+bool is_tiled(const BlockSymbolic& symbolic, const Branch& branch) {
+  return branch.first == branch.last && symbolic.supernodes()[branch.last].flops() >= kLeastTiledFlops;
+}
+
+// Tasks that work on a front while its next diagonal block is factored look at its flag.
+std::atomic_ref<char> flag(std::vector<char>& factored, int branch) {
+  return std::atomic_ref(factored[branch]);
+}
+
+bool are_factored(const BlockSymbolic& symbolic, int branch, std::vector<char>& factored) {
+  return std::ranges::all_of(symbolic.child_branches(branch),
+                             [&](int child) { return flag(factored, child) != 0; });
+}
+
+}  // namespace
+
+int FactorTasks::add(const FactorTask& task, double place) {
+  tasks_.push_back(task);
+  places_.push_back(place);
+  return task_count() - 1;
+}
+
+void FactorTasks::wait_for_children(const BlockSymbolic& symbolic, int branch, int task) {
+  for (const int child : symbolic.child_branches(branch))
+    if (last_task_[child] >= 0) waits_.emplace_back(last_task_[child], task);
+}
+
+void FactorTasks::list(const BlockSymbolic& symbolic, std::span<const int> branches) {
+  tasks_.clear();
+  waits_.clear();
+  places_.clear();
+  last_task_.assign(symbolic.branches().size(), -1);
+  for (const int b : branches) {
+    const Branch& branch = symbolic.branches()[b];
+    if (is_tiled(symbolic, branch)) {
+      list_front(symbolic, b);
+    } else {
+      last_task_[b] = add({Work::branch, b, {}}, branch.place);
+      wait_for_children(symbolic, b, last_task_[b]);
+    }
+  }
+  graph_.build(task_count(), waits_, places_);
+}
+
+// The first operation on a tile of the panel is that of step 0, and waits for the tile's columns. The last ones are the
+// solves of the panel's last column, which wait for all others.
+void FactorTasks::list_front(const BlockSymbolic& symbolic, int branch) {
+  const FrontStrips strips(symbolic.supernodes()[symbolic.branches()[branch].last]);
+  const TileSchedule schedule(strips.count(), strips.own());
+  const int first_gather = task_count(), first_tile = first_gather + strips.own();
+  for (int strip = 0; strip < strips.own(); ++strip) {
+    const double place = static_cast<double>(strip) / strips.own();
+    wait_for_children(symbolic, branch, add({Work::gather, branch, {0, 0, strip}}, place));
+  }
+  for (const TileOperation& operation : schedule.operations()) {
+    const int task = add({Work::panel_tile, branch, operation}, schedule.place(task_count() - first_tile));
+    if (operation.step == 0) waits_.emplace_back(first_gather + operation.column, task);
+  }
+  for (const auto& [earlier, later] : schedule.waits())
+    waits_.emplace_back(first_tile + earlier, first_tile + later);
+  const int first_update = task_count();
+  for (int column = strips.own(); column < strips.count(); ++column) {
+    for (int row = column; row < strips.count(); ++row) {
+      const int last_of_row = schedule.last_on(row, strips.own() - 1);
+      const int task = add({Work::update_tile, branch, {0, row, column}}, schedule.place(last_of_row));
+      waits_.emplace_back(first_tile + last_of_row, task);
+      if (row != column) waits_.emplace_back(first_tile + schedule.last_on(column, strips.own() - 1), task);
+    }
+  }
+  last_task_[branch] = add({Work::nothing, branch, {}}, 0);
+  for (int task = first_update; task < last_task_[branch]; ++task)
+    waits_.emplace_back(task, last_task_[branch]);
+}
+
+void FactorTasks::run_task(const FactorTask& task, BlockMatrix& matrix, std::vector<char>& factored) {
+  BlockCholesky& cholesky = matrix.cholesky();
+  const BlockSymbolic& symbolic = cholesky.symbolic();
+  const int supernode = symbolic.branches()[task.branch].last;
+  switch (task.work) {
+    case Work::branch:
+      if (!are_factored(symbolic, task.branch, factored) || !matrix.factor(task.branch))
+        flag(factored, task.branch) = 0;
+      break;
+    case Work::gather:
+      matrix.gather(task.branch, task.tile.column);
+      if (!are_factored(symbolic, task.branch, factored)) flag(factored, task.branch) = 0;
+      break;
+    case Work::panel_tile:
+      if (flag(factored, task.branch) != 0 && !cholesky.front(supernode).run(task.tile))
+        flag(factored, task.branch) = 0;
+      break;
+    case Work::update_tile:
+      if (flag(factored, task.branch) != 0) cholesky.make_update(supernode, task.tile.row, task.tile.column);
+      break;
+    case Work::nothing:
+      break;
+  }
+}
+
+void FactorTasks::run(Stage stage, BlockMatrix& matrix, std::vector<char>& factored,
+                      ParallelTasks& tasks) const {
+  tasks.run(stage, graph_, [&](int index) { run_task(tasks_[index], matrix, factored); });
+}
+
+void FactorTasks::count(MemoryCount& memory) const {
+  graph_.count(memory);
+  memory.add_grown(tasks_, last_task_, waits_, places_);
+}
+
+}  // namespace cleave

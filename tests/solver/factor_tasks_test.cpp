@@ -1,0 +1,105 @@
+// Large fronts in tiles: the factor that a front has as a whole, and the same bytes however many threads there are and
+// in whatever order tasks that are ready come.
+#include "solver/factor_tasks.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "solver/body_system.h"
+#include "tests/solver/problem_makers.h"
+
+namespace cleave {
+namespace {
+
+class FactorTasksTest : public testing::Test {
+ protected:
+  FactorTasksTest() {
+    step_.prepare(problem_);
+    matrix_.analyze_whole(step_, {}, 1, BlockSymbolic::kAnyBlocks);
+    matrix_.allocate();
+    system_.bind(step_, symbolic().position_of_node());
+    for (int r = 0; r < problem_.row_count(); ++r) d_.push_back(r % 5 == 0 ? 0 : 1 / problem_.compliance[r]);
+    system_.set({d_, {}});
+    std::vector<int> branches(matrix_.branch_count());
+    std::iota(branches.begin(), branches.end(), 0);
+    factor_.list(symbolic(), branches);
+  }
+  const BlockSymbolic& symbolic() { return matrix_.cholesky().symbolic(); }
+  std::vector<double> panels() {
+    return {matrix_.cholesky().panels(), matrix_.cholesky().panels() + symbolic().factor_size()};
+  }
+
+  // The flags of all branches.
+  std::vector<char> run(ParallelTasks& tasks) {
+    std::vector<char> factored(matrix_.branch_count(), 1);
+    factor_.run(Stage::factor_local, matrix_, factored, tasks);
+    return factored;
+  }
+
+  const StepProblem problem_ = make_pile(11, {.columns = 7, .rows = 7, .layers = 7});
+  std::vector<double> d_;
+  PreparedStep step_;
+  BlockMatrix matrix_;
+  BodySystem system_;
+  FactorTasks factor_;
+};
+
+TEST_F(FactorTasksTest, GiveTheFactorOfWholeFronts) {
+  matrix_.assemble(system_.rows());
+  ASSERT_TRUE(matrix_.factor());
+  const std::vector<double> whole = panels();
+  StageClock clock;
+  ParallelTasks tasks(clock, 1);
+  matrix_.assemble(system_.rows());
+  EXPECT_EQ(std::ranges::count(run(tasks), 0), 0);
+  EXPECT_GT(factor_.task_count(), matrix_.branch_count() + 100);
+  const double largest = *std::ranges::max_element(whole);
+  const std::vector<double> tiled = panels();
+  for (std::size_t k = 0; k < whole.size(); ++k) ASSERT_NEAR(tiled[k], whole[k], 1e-12 * largest) << k;
+}
+
+TEST_F(FactorTasksTest, GiveTheSameBytesInAnyOrder) {
+  StageClock clock(2);
+  std::vector<double> first;
+  for (const int threads : {1, 2, 3, 7}) {
+    for (const std::uint64_t seed : {0, 1, 2, 3}) {
+      WorkerTeam::shared(threads).shuffle(seed);
+      ParallelTasks tasks(clock, threads);
+      matrix_.assemble(system_.rows());
+      EXPECT_EQ(std::ranges::count(run(tasks), 0), 0);
+      WorkerTeam::shared(threads).shuffle(0);
+      if (first.empty()) first = panels();
+      EXPECT_EQ(panels(), first) << threads << " threads, order " << seed;
+    }
+  }
+}
+
+// The front with the bad pivot and what is above it, and nothing else.
+TEST_F(FactorTasksTest, NameTheFrontOfAPivotThatIsNotPositive) {
+  StageClock clock(2);
+  const auto branches = symbolic().branches();
+  const int last = matrix_.branch_count() - 1;
+  const auto tiled = std::ranges::find_if(branches, [&](const Branch& branch) {
+    return branch.parent >= 0 && branch.first == branch.last &&
+           symbolic().supernodes()[branch.last].width > 8 &&
+           symbolic().supernodes()[branch.last].flops() > 5e6;
+  });
+  ASSERT_NE(tiled, branches.end());
+  const Supernode& s = symbolic().supernodes()[tiled->last];
+  for (const int threads : {1, 2}) {
+    ParallelTasks tasks(clock, threads);
+    matrix_.assemble(system_.rows());
+    const long ld = 6L * s.row_count;
+    matrix_.cholesky().panels()[s.panel_offset + (6 * s.width - 1) * (ld + 1)] = -1e12;
+    const std::vector<char> factored = run(tasks);
+    for (int b = 0, bad = static_cast<int>(tiled - branches.begin()); b <= last; ++b) {
+      EXPECT_EQ(factored[b], b != bad) << b;
+      if (b == bad) bad = branches[b].parent;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cleave
