@@ -31,6 +31,7 @@ BAD = {
     "partitioners": ("", "nope"),
     "constants": ("", "reach,", "reech"),
     "recorded compliances": ("", "0,", "1e-7"),
+    "rock piles": ("", "200,", "201"),
     "solver": ("", "shur"),
     "format": ("", "markdow"),
     "condition": ("", "solver", "=schur"),
@@ -47,7 +48,7 @@ BAD = {
 # What a misspelt name is like, by the text that was given.
 NEAR = {
     "rock_pill": "rock_pile", "no_contract": "no_contact", "exakt": "exact", "reech": "reach", "shur": "schur",
-    "markdow": "markdown", "figure9": "figure", "parts": "part",
+    "markdow": "markdown", "201": "200", "figure9": "figure", "parts": "part",
     "edit": "edits", "scen": "scene"
 }
 
@@ -85,7 +86,7 @@ COMMANDS = {
     "test": Command({"--preset": "preset"}, passes_on=True),
     "torture": Command({"--minutes": "count", "--seed": "seed", "--trials": "trials", "--count": "count", "--only": "seed",
                         "--patience": "count", **MEASURED}, ("--minutes", "1"), runs=True),
-    "two_threads": Command({"--rounds": "count", **MEASURED}, runs=True),
+    "two_threads": Command({"--bodies": "rock piles", "--rounds": "count", **MEASURED}, runs=True),
     "validate_model": Command({"--limit": "range"}, ("{tree}", "{tree}"), ("{tree}",)),
     "view": Command({"--out": "output file"}, ("{tree}",), ("{tree}",)),
 }

@@ -195,13 +195,22 @@ class BlocksTest(unittest.TestCase):
         self.assertIn("`monolithic` solves a step exactly in 4.00 ms", made)
         self.assertIn("| 10 | 1.00 | 0.250 | 0.100 |\n| 100 | 10.0 | 2.50 | 0.0100 |", made)
 
-    def test_two_threads_are_medians_over_the_rounds(self):
+    def test_two_threads_are_shares_of_the_ceiling(self):
         stored_data.two_threads(self.root)
         stored_data.write_provenance(self.root, "two_threads.csv")
         made = speed.two_threads(self.stored)
-        self.assertIn("| `mix+fm` | 2.00 | 2.00 |", made)
-        self.assertIn("medians of 3 replays", made)
+        self.assertIn("| rocks | cfm | `exact` | `pivot:schur-bodies` |\n| --- | --- | --- | --- |\n"
+                      "| 200 | 1e-05 | - (1.60 of 1.60) | 1.00 (2.00 of 2.00) |\n"
+                      "| 200 | 1e-10 | 0.75 (1.50 of 2.00) | 0.80 (1.50 of 1.88) |\n", made)
+        self.assertIn("the least of 3 combinations:\n\n| step 100 | step 300 |\n| --- | --- |\n"
+                      "| `mix+none` 0.90 (1.80 of 2.00) | `mix+none` 0.90 (1.80 of 2.00) |", made)
+        self.assertIn("Medians of 3 rounds", made)
         self.assertIn("Some CPU, 2 cores, commit 0123456789", made)
+
+    def test_two_threads_of_an_older_form_are_an_error(self):
+        stored_data.write_csv(self.root / "two_threads.csv", [{"step": 100, "threads": 1, "t_s_ms": 1}])
+        with self.assertRaisesRegex(ResultError, "no column processes; scripts/reference makes them anew"):
+            speed.two_threads(self.stored)
 
     def test_cold_starts_count_large_steps_alone(self):
         stored_data.cold_starts(self.root)

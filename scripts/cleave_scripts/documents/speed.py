@@ -19,16 +19,28 @@ TWO_THREADS = ("full", "scripts/reproduce --measure-every 10")
 COLD_ROWS = 1000
 
 
+def _share(share):
+    """A cell: the share, and what it is the quotient of."""
+    return f"{f'{share.share:.2f}' if share.measured else '-'} ({share.ratio:.2f} of {share.ceiling:.2f})"
+
+
 def two_threads(stored):
-    rows = need(stored.table(*THREADS), "two threads")
-    ratios = thread_times.speed_ups(rows)
-    steps = sorted({step for _, step in ratios})
-    lines = [[f"`{name}`", *(f"{ratios[name, step]:.2f}" for step in steps)]
-             for name in dict.fromkeys(name for name, _ in ratios)]
-    rounds = len({row["round"] for row in rows})
-    return (f"t_s of one thread over that of two on recorded steps of Large Rock Pile, medians of {rounds} replays "
-            f"with each, in turn (`{THREADS[1]}`; {stored.origin(THREADS[0])}):\n\n" +
-            text.table(["", *(f"step {step}" for step in steps)], lines))
+    rows = need(stored.table(*THREADS), "two threads", "processes")
+    found = thread_times.shares(rows)
+    piles, large = (thread_times.of_scene(found, scene) for scene in ("rock_pile", "large_rock_pile"))
+    solvers = list(dict.fromkeys(share.solver for share in piles))
+    cells = {(share.bodies, share.cfm, share.solver): _share(share) for share in piles}
+    lines = [[bodies, f"{cfm:g}", *(cells[bodies, cfm, solver] for solver in solvers)]
+             for bodies, cfm in dict.fromkeys((share.bodies, share.cfm) for share in piles)]
+    least = {step: thread_times.least(of_step) for step, of_step in thread_times.by_step(large).items()}
+    return (f"Two threads as a share of the ceiling: of what two independent solves on one thread each reach side by side in the "
+            f"same run, 2 on an ideal machine. In brackets t_s of one thread over that of two, and the ceiling; where that is "
+            f"below {thread_times.LEAST_CEILING} no share is measured (-). Medians of {len({row['round'] for row in rows})} "
+            f"rounds (`{THREADS[1]}`; {stored.origin(THREADS[0])}). Rock piles:\n\n" +
+            text.table(["rocks", "cfm", *(f"`{solver}`" for solver in solvers)], lines) +
+            f"\n\n`schur` on Large Rock Pile, the least of {len({share.combination for share in large})} combinations:\n\n" +
+            text.table([f"step {step}" for step in least],
+                       [[f"`{share.combination}` {_share(share)}" for share in least.values()]]))
 
 
 def model(stored):

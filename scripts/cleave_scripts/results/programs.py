@@ -1,9 +1,11 @@
 """The programs that scripts run: CLEAVE_PROGRAM, or what is built now."""
+import contextlib
 import json
 import os
 import pathlib
 import signal
 import subprocess
+import tempfile
 
 from cleave_scripts.results.command import say
 from cleave_scripts.results.errors import AlreadyTold, ResultError
@@ -60,16 +62,35 @@ def benchmark_beside(program, name):
 
 def run(command, allowed=(0,), **options):
     """Runs to the end; an exit code that is not allowed is a ResultError with its last line."""
-    words = list(map(str, command))
-    try:
-        done = subprocess.run(words, stderr=subprocess.PIPE, text=True, errors="replace", check=False, **options)
-    except FileNotFoundError:
-        raise ResultError(f"{words[0]} is not built; run scripts/setup first") from None
-    except OSError as error:
-        raise ResultError(f"{words[0]} cannot be run: {error.strerror}") from None
-    if done.returncode not in allowed:
-        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        raise ResultError(f"{' '.join(words[:2])} stopped with exit code {done.returncode}: {last}")
+    run_side_by_side([command], allowed, **options)
+
+
+def run_side_by_side(commands, allowed=(0,), **options):
+    """The same of programs that start at the same time. Where one fails the others are stopped."""
+    with contextlib.ExitStack() as stack:
+        running = [stack.enter_context(_running(list(map(str, command)), **options)) for command in commands]
+        for process, said in running:
+            if process.wait() not in allowed:
+                said.seek(0)
+                last = (said.read().strip().splitlines() or ["no message"])[-1]
+                raise ResultError(f"{' '.join(process.args[:2])} stopped with exit code {process.returncode}: {last}")
+
+
+@contextlib.contextmanager
+def _running(words, **options):
+    """(process, file of what it says); it does not outlive the context."""
+    with tempfile.TemporaryFile("w+", errors="replace") as said:
+        try:
+            process = subprocess.Popen(words, stderr=said, **options)
+        except FileNotFoundError:
+            raise ResultError(f"{words[0]} is not built; run scripts/setup first") from None
+        except OSError as error:
+            raise ResultError(f"{words[0]} cannot be run: {error.strerror}") from None
+        try:
+            yield process, said
+        finally:
+            process.kill()
+            process.wait()
 
 
 def run_and_watch(command, **options):
@@ -93,8 +114,18 @@ def record(program, directory, scene, at, *options):
 
 def replay(program, directory, files, *options, all_ok=False):
     """Rows of a replay, also of cells that failed, unless all have to be ok."""
-    run([program, "replay", *files, *options, "--out", directory, "--force"], allowed=(0, 2))
-    rows = load_steps(directory / "steps.csv")[0]
+    return replay_side_by_side(program, [directory], files, *options, all_ok=all_ok)[0]
+
+
+def replay_side_by_side(program, directories, files, *options, all_ok=False):
+    """The same of a replay into each directory, started at the same time: rows of each."""
+    run_side_by_side([[program, "replay", *files, *options, "--out", directory, "--force"] for directory in directories],
+                     allowed=(0, 2))
+    return [_replayed(directory / "steps.csv", all_ok) for directory in directories]
+
+
+def _replayed(path, all_ok):
+    rows = load_steps(path)[0]
     failed = [row for row in rows if row["status"] != "ok"]
     if all_ok and failed:
         first = failed[0]
