@@ -28,7 +28,7 @@ struct Best {
   std::vector<double> impulse;
 
   void clear() { residual = std::numeric_limits<double>::infinity(); }
-  void offer(const SolveState& state) {
+  void offer(SolveState& state) {
     const double offered = state.residual();
     if (offered < residual) residual = offered, impulse = state.impulse;
   }

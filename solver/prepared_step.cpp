@@ -39,17 +39,6 @@ void PreparedStep::run(std::span<const Chunk> chunks, const Task& task) const {
   for (const Chunk& chunk : chunks) task(chunk);
 }
 
-// value_of(first row, last row) of every chunk of groups.
-template <class Value>
-std::span<const double> PreparedStep::values_of_chunks(const Value& value_of) const {
-  chunk_values_.resize(group_chunks_.size());
-  run(group_chunks_, [&](const Chunk& chunk) {
-    const auto [first, last] = rows_of(chunk);
-    chunk_values_[&chunk - group_chunks_.data()] = value_of(first, last);
-  });
-  return chunk_values_;
-}
-
 void PreparedStep::prepare(const StepProblem& problem, ParallelTasks* tasks) {
   problem_ = &problem;
   tasks_ = tasks;
@@ -70,13 +59,9 @@ void PreparedStep::prepare(const StepProblem& problem, ParallelTasks* tasks) {
   set_.bind(problem);
   turn_diagonal();
   least_relative_compliance_ = std::numeric_limits<double>::infinity();
-  const auto least = [&](int first, int last) {
-    double ratio = std::numeric_limits<double>::infinity();
-    for (int r = first; r < last; ++r) ratio = std::min(ratio, problem.compliance[r] / diagonal_[r]);
-    return ratio;
-  };
-  for (const double ratio : values_of_chunks(least))
-    least_relative_compliance_ = std::min(least_relative_compliance_, ratio);
+  for (int r = 0; r < m; ++r) {
+    least_relative_compliance_ = std::min(least_relative_compliance_, problem.compliance[r] / diagonal_[r]);
+  }
   velocity_scale_ = 1;
   for (double v : problem.free_velocity) velocity_scale_ = std::max(velocity_scale_, std::abs(v));
 }
@@ -192,16 +177,6 @@ void PreparedStep::slack(std::span<const double> v, std::span<const double> impu
     const auto [first, last] = rows_of(chunk);
     for (int r = first; r < last; ++r) w[r] += problem_->compliance[r] * impulse[r] - problem_->rhs[r];
   });
-}
-
-double PreparedStep::residual(std::span<const double> impulse, std::span<const double> w) const {
-  double worst = 0;
-  for (const double value : values_of_chunks(
-           [&](int first, int last) { return set_.residual(first, last, diagonal_, impulse, w); })) {
-    if (!(value <= worst)) worst = value;  // a NaN must not pass unseen
-    if (std::isnan(worst)) return worst;
-  }
-  return worst;
 }
 
 }  // namespace cleave

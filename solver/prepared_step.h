@@ -69,7 +69,9 @@ class PreparedStep {
   // w (m) = J v + C lambda - b
   void slack(std::span<const double> v, std::span<const double> impulse, std::span<double> w) const;
   // The quantity the judge measures; impulse and w along the axes of the set.
-  double residual(std::span<const double> impulse, std::span<const double> w) const;
+  double residual(std::span<const double> impulse, std::span<const double> w) const {
+    return set_.residual(0, row_count(), diagonal_, impulse, w);
+  }
 
  private:
   void list_groups();
@@ -79,8 +81,6 @@ class PreparedStep {
   void turn_diagonal();
   template <class Task>
   void run(std::span<const Chunk> chunks, const Task& task) const;
-  template <class Value>
-  std::span<const double> values_of_chunks(const Value& value_of) const;
   void add_transpose(const double* rows, std::span<const double> x, std::span<const double> base,
                      std::span<double> out) const;
 
@@ -90,8 +90,7 @@ class PreparedStep {
   std::vector<RowGroup> groups_;
   std::vector<int> side_first_, sides_;
   std::vector<Chunk> group_chunks_, body_chunks_;
-  mutable std::vector<double> group_sums_;    // scratch: (groups, 12)
-  mutable std::vector<double> chunk_values_;  // scratch: by chunk of groups
+  mutable std::vector<double> group_sums_;  // scratch: (groups, 12)
   std::vector<double> inverse_mass_, mass_jacobian_, diagonal_;
   double velocity_scale_ = 1, least_relative_compliance_ = 0;
 };

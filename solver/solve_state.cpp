@@ -109,6 +109,12 @@ double SolveState::refine_free(double target, int most_steps, bool count) {
   return worst;
 }
 
+double SolveState::residual() {
+  return greatest_over_ranges([this](int first, int last) {
+    return step->set().residual(first, last, step->diagonal(), impulse, slack);
+  });
+}
+
 int SolveState::find_violations(double tolerance) {
   StageTimer timer(tasks.clock(), Stage::check);
   const StepProblem& problem = step->problem();

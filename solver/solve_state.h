@@ -8,6 +8,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -83,17 +84,22 @@ struct SolveState {
   // Moves one violated row to the state its violation asks for.
   void flip(int row);
 
-  // Light work on rows in ranges that depend on their number alone, one task each: task(first, last, range). A short
-  // vector is one range: to wake a thread for it would take longer.
-  static constexpr int kRowsOfARange = 1024;
-  int range_count() const { return (step->row_count() + kRowsOfARange - 1) / kRowsOfARange; }
+  // Light work on rows in ranges that depend on their number alone, one task each: task(first, last, range). Few rows are
+  // one range: to hand out a part of them would take longer than to do it.
+  static constexpr int kRowsOfARange = 1024, kFewRows = 4096;
+  int rows_of_a_range() const { return step->row_count() <= kFewRows ? kFewRows : kRowsOfARange; }
+  int range_count() const { return (step->row_count() + rows_of_a_range() - 1) / rows_of_a_range(); }
   template <class Task>
   void run_over_rows(const Task& task);
   // The greatest of the values of all rows, at least 0; infinite where one is no number.
   template <class Value>
   double greatest_over_rows(const Value& value_of);
+  // The same of the values of whole ranges: value_of(first, last).
+  template <class Value>
+  double greatest_over_ranges(const Value& value_of);
 
-  double residual() const { return step->residual(impulse, slack); }
+  // The quantity the judge measures; infinite where it is no number.
+  double residual();
 
   DirectOptions options;
   ParallelTasks tasks;
@@ -120,24 +126,33 @@ struct SolveState {
 template <class Task>
 void SolveState::run_over_rows(const Task& task) {
   tasks.run(range_count(), [&](int range) {
-    const int first = range * kRowsOfARange;
-    task(first, std::min(first + kRowsOfARange, step->row_count()), range);
+    const int first = range * rows_of_a_range();
+    task(first, std::min(first + rows_of_a_range(), step->row_count()), range);
   });
 }
 
 template <class Value>
-double SolveState::greatest_over_rows(const Value& value_of) {
+double SolveState::greatest_over_ranges(const Value& value_of) {
   range_values.assign(range_count(), 0.0);
-  run_over_rows([&](int first, int last, int range) {
+  run_over_rows([&](int first, int last, int range) { range_values[range] = value_of(first, last); });
+  double greatest = 0;
+  for (const double value : range_values) {
+    if (!(value <= greatest)) greatest = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
+  }
+  return greatest;
+}
+
+template <class Value>
+double SolveState::greatest_over_rows(const Value& value_of) {
+  return greatest_over_ranges([&](int first, int last) {
     double greatest = 0;
     for (int r = first; r < last; ++r) {
       const double value = value_of(r);
       if (value <= greatest) continue;
       greatest = value > greatest ? value : std::numeric_limits<double>::infinity();
     }
-    range_values[range] = greatest;
+    return greatest;
   });
-  return range_values.empty() ? 0.0 : std::ranges::max(range_values);
 }
 
 }  // namespace cleave

@@ -48,7 +48,7 @@ void IntervalBarrier::start(SolveState& state, std::span<const double> speed) {
   pair_first_.clear();
   fixed_.assign(speed.size(), false);
   for (std::size_t r = 0; r < speed.size(); ++r) {
-    if (r % SolveState::kRowsOfARange == 0) pair_first_.push_back(static_cast<int>(pairs_.size()));
+    if (r % state.rows_of_a_range() == 0) pair_first_.push_back(static_cast<int>(pairs_.size()));
     add_pairs(state, static_cast<int>(r), speed[r]);
   }
   pair_first_.push_back(static_cast<int>(pairs_.size()));

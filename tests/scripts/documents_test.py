@@ -27,7 +27,7 @@ USED_BY = {
     "libtomlplusplus-dev": ("CMakeLists.txt", "toml++"),
     "libgtest-dev": ("tests/CMakeLists.txt", "GTest"),
     "libbenchmark-dev": ("tests/CMakeLists.txt", "benchmark"),
-    "libmetis-dev": ("tests/CMakeLists.txt", "metis"),
+    "libmetis-dev": ("CMakeLists.txt", "METIS"),
     "python3": ("tests/CMakeLists.txt", "python3"),
     "chromium": ("tests/scripts/browser.py", "chromium"),
     "clang": ("CMakePresets.json", "clang"),

@@ -16,7 +16,7 @@ namespace {
 
 StepProblem pile_of_several_ranges() {
   StepProblem problem = make_pile(11, {.columns = 5, .rows = 5, .layers = 5});
-  EXPECT_GT(problem.row_count(), SolveState::kRowsOfARange);
+  EXPECT_GT(problem.row_count(), SolveState::kFewRows);
   return problem;
 }
 

@@ -37,7 +37,7 @@ STAGES = (
     Stage("busy_machine", ("busy_machine", "--out", "{out}"), 1, files=(("busy_machine.csv", "busy_machine.csv"),)),
     Stage("partition_benchmark", ("benchmark_partitioners", "--out", "{out}"), 3,
           files=(("partition_benchmark.json", "partition_benchmark.json"),)),
-    Stage("two_threads", ("two_threads", "--out", "{out}"), 45, files=(("two_threads.csv", "two_threads.csv"),)),
+    Stage("two_threads", ("two_threads", "--out", "{out}"), 50, files=(("two_threads.csv", "two_threads.csv"),)),
     Stage("modelled_workers", ("modelled_workers", "--out", "{out}"), 5,
           files=(("modelled_workers.csv", "modelled_workers.csv"),)),
     Stage("cold_starts", ("cold_starts", "--out", "{out}"), 1, files=(("cold_starts.csv", "cold_starts.csv"),)),
