@@ -110,6 +110,7 @@ class DirectSolver : public StepSolver {
   int analyzed_bodies_ = 0;
   std::vector<int> analyzed_body_;
   std::vector<int> analyzed_part_, analyzed_parent_;  // what the kernel looks at, until it is given others
+  std::vector<double> warm_impulse_;                  // along the axes of the set
   ProximalStep proximal_;
   Best chain_best_, proximal_best_, attempt_best_;
 };
@@ -252,6 +253,8 @@ SolveSummary DirectSolver::do_solve(const StepProblem& problem, const Parts& par
     solve_in_memory(problem, parts, solution, summary);
   } catch (const MemoryRefused& refused) {
     analyzed_ = false;
+    summary = {};
+    summary.kernel = kernel_name_;
     summary.status = SolveStatus::out_of_memory;
     summary.message = refused.what();
   }
@@ -270,12 +273,13 @@ void DirectSolver::solve_in_memory(const StepProblem& problem, const Parts& part
   if (carried_ != nullptr) carried_->begin_step(state_.changed_rows);
   plan_analysis(problem, parts);
   state_.part_of_body = parts.part_of_body;
-  step_.set().to_axes(solution.impulse);
-  bool solved = run_attempts(summary, problem, solution.impulse);
+  warm_impulse_ = solution.impulse;
+  step_.set().to_axes(warm_impulse_);
+  bool solved = run_attempts(summary, problem, warm_impulse_);
   if (!solved && carried_ != nullptr && carried_->counts().factor_reuses > 0) {
     ++summary.fallbacks;
     carried_->forget();
-    solved = run_attempts(summary, problem, solution.impulse);
+    solved = run_attempts(summary, problem, warm_impulse_);
   }
   state_.analyze();  // where no strategy came to a factorisation
   step_.set().project(state_.impulse);

@@ -3,6 +3,8 @@
 #include <camd.h>
 #include <metis.h>
 
+#include <cstdlib>
+#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -11,6 +13,19 @@
 namespace cleave {
 
 static_assert(sizeof(idx_t) == sizeof(int), "METIS with indices of 32 bits");
+
+namespace {
+
+constexpr int kDissectionParts = 2;            // the least that METIS_NodeNDP takes; it goes on below them
+constexpr std::size_t kDissectionBytes = 100;  // more than it takes, per node and entry of the adjacency
+
+void require_room(std::size_t bytes) {
+  void* const room = std::malloc(bytes);
+  if (room == nullptr) throw std::bad_alloc();
+  std::free(room);
+}
+
+}  // namespace
 
 void order_by_degree(const BlockGraph& graph, std::span<const int> constraint,
                      std::span<int> node_at_position) {
@@ -23,16 +38,20 @@ void order_by_degree(const BlockGraph& graph, std::span<const int> constraint,
   if (status != CAMD_OK) throw std::logic_error("camd_order: status " + std::to_string(status));
 }
 
+// METIS draws from rand() of the C library, and where it finds no memory it ends the process: so one call at a time, and
+// none without room. METIS_NodeND would put handlers of its own in the place of the program's, METIS_NodeNDP does not.
 void order_by_dissection(const BlockGraph& graph, std::span<int> node_at_position) {
+  static std::mutex one_at_a_time;
+  const std::scoped_lock lock(one_at_a_time);
   int count = graph.node_count();
   if (count == 0) return;
-  std::vector<int> position_of_node(count);
-  // It reads the graph only, but does not say so. The default options hold a fixed seed.
-  const int status =
-      METIS_NodeND(&count, const_cast<int*>(graph.first.data()), const_cast<int*>(graph.adjacency.data()),
-                   nullptr, nullptr, node_at_position.data(), position_of_node.data());
-  if (status == METIS_ERROR_MEMORY) throw std::bad_alloc();
-  if (status != METIS_OK) throw std::logic_error("METIS_NodeND: status " + std::to_string(status));
+  require_room(kDissectionBytes * (graph.first.size() + graph.adjacency.size()));
+  std::vector<int> position_of_node(count), sizes(2 * kDissectionParts);
+  // It reads the graph only, but does not say so.
+  const int status = METIS_NodeNDP(count, const_cast<int*>(graph.first.data()),
+                                   const_cast<int*>(graph.adjacency.data()), nullptr, kDissectionParts,
+                                   nullptr, node_at_position.data(), position_of_node.data(), sizes.data());
+  if (status != METIS_OK) throw std::logic_error("METIS_NodeNDP: status " + std::to_string(status));
 }
 
 }  // namespace cleave

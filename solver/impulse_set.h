@@ -41,7 +41,7 @@ class ImpulseSet {
   // impulse (m, along the axes) <- the nearest point of the set.
   void project(std::span<double> impulse) const;
 
-  // max_r d_r |lambda_r - projection of (lambda_r - w_r / d_r)| of rows first .. last - 1, whole contacts; arrays (m) along
+  // max_r d_r |lambda_r - projection of (lambda_r - w_r / d_r)| of rows first .. last - 1; arrays (m) along
   // the axes. NaN where one is no number.
   double residual(int first, int last, std::span<const double> d, std::span<const double> impulse,
                   std::span<const double> w) const;

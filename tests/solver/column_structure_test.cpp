@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <set>
+#include <thread>
 
 #include "tests/solver/seeded_random.h"
 
@@ -123,15 +125,51 @@ TEST(ColumnStructureTest, TakesTheOrderWithFewerFlops) {
   EXPECT_TRUE(took_degree && took_dissection);
 }
 
-// A limit of blocks that only the one or the other order keeps.
+std::size_t blocks_of(const std::vector<std::set<int>>& below) {
+  std::size_t blocks = below.size();
+  for (const std::set<int>& rows : below) blocks += rows.size();
+  return blocks;
+}
+
+// A limit of blocks that one order keeps and the other does not.
 TEST(ColumnStructureTest, FindsTheOrderThatFits) {
+  for (const bool diagonals : {false, true}) {
+    const int side = 13, nodes = side * side * side;
+    const Edges edges = cube(side, diagonals);
+    std::vector<int> first, adjacency, order(nodes);
+    const BlockGraph graph = graph_of(nodes, edges, first, adjacency);
+    order_by_degree(graph, {}, order);
+    const std::size_t by_degree = blocks_of(eliminate(nodes, edges, order));
+    order_by_dissection(graph, order);
+    const std::size_t by_dissection = blocks_of(eliminate(nodes, edges, order));
+    ASSERT_NE(by_degree, by_dissection);
+    ColumnStructure columns;
+    EXPECT_TRUE(columns.analyze(nodes, edges, {}, static_cast<long>(std::min(by_degree, by_dissection))));
+    EXPECT_EQ(columns.block_count(), static_cast<long>(std::min(by_degree, by_dissection)));
+    EXPECT_FALSE(
+        columns.analyze(nodes, edges, {}, static_cast<long>(std::min(by_degree, by_dissection)) - 1));
+  }
+}
+
+// What the library under it shares with the whole process.
+TEST(ColumnStructureTest, IsTheSameBesideAnotherAndLeavesSignalsAlone) {
+  struct sigaction before {
+  }, after{};
+  ASSERT_EQ(::sigaction(SIGTERM, nullptr, &before), 0);
   const int side = 15, nodes = side * side * side;
   const Edges edges = cube(side, true);
-  ColumnStructure chosen;
-  ASSERT_TRUE(chosen.analyze(nodes, edges, {}, kAny));
-  EXPECT_TRUE(chosen.analyze(nodes, edges, {}, chosen.block_count()));
-  EXPECT_FALSE(chosen.analyze(nodes, edges, {}, nodes + static_cast<long>(edges.size())));
-  EXPECT_GT(chosen.block_count(), 0);
+  ColumnStructure alone, columns[2];
+  ASSERT_TRUE(alone.analyze(nodes, edges, {}, kAny));
+  for (int trial = 0; trial < 3; ++trial) {
+    std::thread beside([&] { columns[0].analyze(nodes, edges, {}, kAny); });
+    columns[1].analyze(nodes, edges, {}, kAny);
+    beside.join();
+    for (const ColumnStructure& found : columns)
+      EXPECT_TRUE(std::ranges::equal(found.node_at_position(), alone.node_at_position())) << trial;
+  }
+  ASSERT_EQ(::sigaction(SIGTERM, nullptr, &after), 0);
+  EXPECT_EQ(before.sa_handler, after.sa_handler);
+  EXPECT_EQ(before.sa_flags, after.sa_flags);
 }
 
 }  // namespace
