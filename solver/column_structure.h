@@ -2,8 +2,8 @@
 // rows a column has.
 //
 // The order reduces fill: minimum degree, and where that leaves a factorisation so large that it is worth the time of
-// looking for a better order, nested dissection if it leaves less and there are no stages (elimination_order.h). It is then made a postorder of
-// the tree, so that every subtree is contiguous. Positions are places in that order.
+// looking for a better order, nested dissection if it leaves less and there are no stages (elimination_order.h). It is then
+// made a postorder of the tree, so that every subtree is contiguous. Positions are places in that order.
 #pragma once
 
 #include <span>
