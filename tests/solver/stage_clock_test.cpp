@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <thread>
 
 #include "tests/solver/seeded_random.h"
 
@@ -175,6 +176,16 @@ TEST(StageClockTest, TimerAddsTheTimeOfItsScope) {
   const double refine_ms = times.stage_ms[static_cast<std::size_t>(Stage::refine)];
   EXPECT_GE(refine_ms, 2);
   EXPECT_LE(refine_ms, times.total_ms);
+}
+
+TEST(StageClockTest, TimersOfOtherThreadsAddNothing) {
+  StageClock clock;
+  clock.start();
+  std::thread([&clock] {
+    const StageTimer timer(clock, Stage::refine);
+    spin_ms(1);
+  }).join();
+  EXPECT_EQ(clock.stop().stage_ms[static_cast<std::size_t>(Stage::refine)], 0);
 }
 
 }  // namespace
