@@ -23,8 +23,8 @@ namespace {
 // The first byte that a child sends says what follows.
 constexpr char kValue = 'v', kError = 'e', kErrorWithoutMemory = 'm';
 constexpr int kChildFailed = 1;
-constexpr std::size_t kRoomBytes =
-    4 << 20;  // with less left, a library's error may be that it found no memory
+// With less than this part of what a child may use left, a library's error may be that it found no memory.
+constexpr std::size_t kPartOfRoom = 8;
 
 [[noreturn]] void fail(const std::string& subject, const std::string& text) {
   throw std::invalid_argument(subject + ": " + text);
@@ -66,20 +66,20 @@ void enter_child(const ReadLimits& limits) {
   for (const int printed : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, printed);
 }
 
-bool has_room() {
-  void* const room = std::malloc(kRoomBytes);
+bool has_room(const ReadLimits& limits) {
+  void* const room = std::malloc(limits.memory_bytes / kPartOfRoom);
   std::free(room);
   return room != nullptr;
 }
 
 // What is sent ends the child: no exit handler of the parent runs in it.
-[[noreturn]] void serve(int pipe, const std::function<std::string()>& read) {
+[[noreturn]] void serve(int pipe, const ReadLimits& limits, const std::function<std::string()>& read) {
   char kind = kValue;
   std::string bytes;
   try {
     bytes = read();
   } catch (const std::exception& error) {
-    kind = has_room() ? kError : kErrorWithoutMemory;
+    kind = has_room(limits) ? kError : kErrorWithoutMemory;
     bytes = error.what();
   }
   const bool sent = write_all(pipe, {&kind, 1}) && write_all(pipe, bytes);
@@ -139,7 +139,7 @@ std::string read_in_child(const std::string& subject, const ReadLimits& limits,
   if (child == 0) {
     ::close(ends[0]);
     enter_child(limits);
-    serve(ends[1], read);
+    serve(ends[1], limits, read);
   }
   const int reason = errno;
   ::close(ends[1]);
