@@ -155,12 +155,13 @@ class CommandTest(TortureCase):
         self.assertEqual(running.returncode, 130)
         self.assertFalse([pid for pid in hanging if pathlib.Path(f"/proc/{pid}").exists()])
 
-    @staticmethod
-    def children_of(pid):
-        """Those that hang in a trial."""
+    @classmethod
+    def children_of(cls, pid):
+        """Those that hang in a trial: children of lanes."""
         found = []
-        for child in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split():
-            with contextlib.suppress(OSError):  # it has ended
+        with contextlib.suppress(OSError):  # it has ended
+            for child in pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text().split():
+                found += cls.children_of(child)
                 if os.readlink(f"/proc/{child}/cwd").endswith("two-processes-0"):
                     found.append(child)
         return found

@@ -85,7 +85,7 @@ COMMANDS = {
     "table1": Command({"--format": "format", "--where": "condition"}, ("{tree}",), ("{tree}",), ("{tree}",)),
     "test": Command({"--preset": "preset"}, passes_on=True),
     "torture": Command({"--minutes": "count", "--seed": "seed", "--trials": "trials", "--count": "count", "--only": "seed",
-                        "--patience": "count", **MEASURED}, ("--minutes", "1"), runs=True),
+                        "--patience": "count", "--side-by-side": "count", **MEASURED}, ("--minutes", "1"), runs=True),
     "two_threads": Command({"--bodies": "rock piles", "--rounds": "count", **MEASURED}, runs=True),
     "validate_model": Command({"--limit": "range"}, ("{tree}", "{tree}"), ("{tree}",)),
     "view": Command({"--out": "output file"}, ("{tree}",), ("{tree}",)),

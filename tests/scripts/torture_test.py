@@ -1,11 +1,13 @@
 """The judge of the hostile trials against closed forms, and what damages files and cells: it always damages."""
 import math
+import os
 import pathlib
 import random
 import re
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 import h5py
@@ -13,6 +15,7 @@ import numpy as np
 
 from synthetic import ROOT
 
+from cleave_scripts.results.errors import ResultError
 from cleave_scripts.torture import endings
 from cleave_scripts.torture.cell_edits import changed_cell
 from cleave_scripts.torture.changes_of_values import ANY
@@ -20,6 +23,7 @@ from cleave_scripts.torture.child import Ending
 from cleave_scripts.torture.foreign_file import write_foreign
 from cleave_scripts.torture.guarded import Unreadable, guarded
 from cleave_scripts.torture.judge import Problem, judge, judge_file
+from cleave_scripts.torture.lanes import Lanes
 from cleave_scripts.torture.meaning import meaning
 from cleave_scripts.torture.problem_files import ARRAY_CHANGES, FILE_CHANGES
 
@@ -143,6 +147,49 @@ class DamageTest(unittest.TestCase):
                     self.assertNotEqual(float(cell), float(text))
 
 
+class LanesTest(unittest.TestCase):
+
+    def watch(self, make, tell=lambda *_: None):
+        """The last tally, and whether it was interrupted."""
+        last = []
+        interrupted = Lanes(3, make).watch(lambda text, tally: (last.append(tally), tell(text, tally)))
+        return last[-1], interrupted
+
+    def test_the_tallies_are_summed(self):
+
+        def make(lane, tally, tell):
+            tell("")  # a count of nothing must not be added a second time
+            tally.counts["flips"].update(trials=lane + 1, findings=1)
+            tally.found["flips"]["a fault"] += 1
+            tell("a finding")
+
+        tally, interrupted = self.watch(make)
+        self.assertFalse(interrupted)
+        self.assertEqual(tally.counts["flips"], {"trials": 6, "findings": 3})
+        self.assertEqual(tally.found["flips"], {"a fault": 3})
+
+    def test_an_interrupted_lane_tells_what_it_has(self):
+
+        def make(lane, tally, tell):
+            tally.counts["flips"]["trials"] = 1
+            tell("begun")
+            time.sleep(60)
+
+        def interrupt(text, tally):
+            if tally.total("trials") == 3 and text:
+                raise KeyboardInterrupt
+
+        begin = time.monotonic()
+        tally, interrupted = self.watch(make, interrupt)
+        self.assertTrue(interrupted)
+        self.assertEqual(tally.total("trials"), 3)
+        self.assertLess(time.monotonic() - begin, 60)
+
+    def test_a_lane_that_dies_is_an_error(self):
+        with self.assertRaisesRegex(ResultError, "lane 1 .* exit code 7"):
+            self.watch(lambda lane, tally, tell: lane == 1 and os._exit(7))
+
+
 class EndingsTest(unittest.TestCase):
 
     def fault(self, code, err="", out="", hung=False):
@@ -150,7 +197,8 @@ class EndingsTest(unittest.TestCase):
 
     def test_what_is_promised_is_no_fault(self):
         for case in ((0, "told\nand told"), (1, "cleave: no"), (3, "a\nb", "FAIL"),
-                     (1, f"a.h5: problem of x step 1: 2 bodies, hash {'0' * 16}\ncleave verify: no", "ok")):
+                     (1, f"a.h5: problem of x step 1: 2 bodies, hash {'0' * 16}\ncleave verify: no", "ok"),
+                     (1, "replay: step 4 of 6, 14 s, about 7 s to go\ncleave replay: disk/out: cannot be written")):
             self.assertIsNone(self.fault(*case), case)
 
     def test_what_is_not_promised_is_named(self):

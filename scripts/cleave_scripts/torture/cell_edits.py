@@ -8,7 +8,7 @@ WORDS = ("", "-", "nan", "inf", "x", "0", "-1", "1e308", "ok")
 def changed_cell(dice, text, least):
     """Another value, most often one that looks as good. least: the smallest change of a number that is none."""
     if dice.random() < 0.2:
-        return dice.choice([word for word in WORDS if not _same(word, text)])
+        return dice.choice([word for word in WORDS if not _same(word, text, least)])
     value = _number(text)
     if value is None:
         return text + dice.choice(["x", "0"])
@@ -26,9 +26,9 @@ def _number(text):
         return None
 
 
-def _same(first, second):
-    """As text, or as numbers."""
+def _same(first, second, least):
+    """As text, or as numbers that differ by less."""
     one, other = _number(first), _number(second)
     if one is None or other is None:
         return first == second
-    return one == other or math.isnan(one) and math.isnan(other)
+    return one == other or abs(one - other) <= least or math.isnan(one) and math.isnan(other)

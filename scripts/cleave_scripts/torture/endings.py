@@ -4,6 +4,7 @@ import signal
 
 DONE, BAD_INPUT, ROWS_FAILED, CHECK_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 INFORMATION = re.compile(r": problem of .*, hash [0-9a-f]{16}$")  # what verify says of a good file, before a bad one
+PROGRESS = re.compile(r"^\w+: step \d+ of \d+, \d+ s, about \d+ s to go$")  # of what had taken long
 ALARMS = ("Traceback (most recent call last)", "AddressSanitizer", "ThreadSanitizer", "runtime error:", "terminate called",
           "Assertion", "HDF5-DIAG", "free(): invalid", "malloc():", "double free")
 
@@ -23,8 +24,8 @@ def fault(ending, allowed):
 
 
 def _fault_of_refusal(ending):
-    """One line, of signs that can be printed. What was said of good files before stays said."""
-    lines = [line for line in ending.lines() if not INFORMATION.search(line)]
+    """One line, of signs that can be printed. What was said of good files and of progress before stays said."""
+    lines = [line for line in ending.lines() if not INFORMATION.search(line) and not PROGRESS.search(line)]
     if len(lines) != 1:
         return "no error line" if not lines else "several error lines"
     return None if lines[0].isprintable() else "error line with control characters"

@@ -8,15 +8,17 @@ import traceback
 from cleave_scripts.torture.material import Material
 from cleave_scripts.torture.trial import Trial
 
-EVERY_S = 30  # a line of progress
+EVERY_S = 30  # the counts are told
 
 
 class Rounds:
-    """Kinds take turns so that each has its share of the time. program, material and patience are what trials work with."""
+    """Kinds take turns so that each has its share of the time. program, material and patience are what trials work with; lane is
+    which of the lanes side by side: trials of a kind are dealt to them by turns."""
 
-    def __init__(self, program, kinds, options, keeper, tally, tell):
+    def __init__(self, program, kinds, options, keeper, lane, tally, tell):
         self.program, self.patience = program, options.patience
         self.kinds, self.options, self.keeper, self.tally, self.tell = kinds, options, keeper, tally, tell
+        self.lane, self.lanes = lane, options.side_by_side
         self.material = None
         self.begin = self.told = time.monotonic()
 
@@ -45,13 +47,17 @@ class Rounds:
         """The kind that is furthest behind; None when nothing is left to do."""
         count = 1 if self.options.only is not None else self.options.count
         left = [kind for kind in self.kinds if kind.name in self.tally.counts and
-                (count is None or self.tally.counts[kind.name]["trials"] < count)]
-        if self._seconds() >= 60 * self.options.minutes or not left:
+                (count is None or self._number(kind) < count)]
+        if self._seconds() * self.lanes >= 60 * self.options.minutes or not left:
             return None
         return min(left, key=lambda kind: self.tally.seconds[kind.name] / kind.share)
 
+    def _number(self, kind):
+        """Of the next trial of the kind, from 0."""
+        return self.lane + self.lanes * self.tally.counts[kind.name]["trials"]
+
     def _make(self, kind, scratch):
-        number = self.tally.counts[kind.name]["trials"] if self.options.only is None else self.options.only
+        number = self._number(kind) if self.options.only is None else self.options.only
         directory = scratch / f"{kind.name}-{number}"
         directory.mkdir()
         trial, begin = Trial(kind.name, self.options.seed, number, directory, self), time.monotonic()
@@ -72,6 +78,4 @@ class Rounds:
     def _tell(self):
         if time.monotonic() - self.told >= EVERY_S:
             self.told = time.monotonic()
-            minutes = self._seconds() / 60
-            left = max(0, self.options.minutes - minutes)
-            self.tell(f"{minutes:.1f} min, at most {left:.1f} left: {self.tally.in_words()}")
+            self.tell("")

@@ -27,6 +27,18 @@ class Tally:
         self.seconds = collections.Counter()
         self.not_run = {}  # kind: why
 
+    @classmethod
+    def of_all(cls, tallies):
+        """The sum."""
+        sum_of_all = cls()
+        for tally in tallies:
+            sum_of_all.seconds.update(tally.seconds)
+            sum_of_all.not_run.update(tally.not_run)
+            for mine, theirs in ((sum_of_all.counts, tally.counts), (sum_of_all.found, tally.found)):
+                for kind, numbers in theirs.items():
+                    mine[kind].update(numbers)
+        return sum_of_all
+
     def add(self, kind, trial, seconds):
         self.seconds[kind] += seconds
         self.counts[kind]["trials"] += 1

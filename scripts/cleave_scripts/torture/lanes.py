@@ -1,0 +1,68 @@
+"""Trials side by side: every lane is a process that takes its share of the time and of the trials of each kind."""
+import multiprocessing
+import multiprocessing.connection
+import os
+import signal
+
+from cleave_scripts.results.errors import ResultError
+from cleave_scripts.torture.tally import Tally
+
+FORK = multiprocessing.get_context("fork")
+
+
+class Lanes:
+    """make(lane, tally, tell) makes the trials of a lane, counts them in its tally and calls tell(text) meanwhile, with "" where
+    only the counts are new."""
+
+    def __init__(self, count, make):
+        self.make, self.tallies, self.pipes = make, [Tally() for _ in range(count)], {}
+        self.parent = os.getpid()
+        for lane in range(count):
+            ours, theirs = FORK.Pipe(duplex=False)
+            process = FORK.Process(target=self._run, args=(lane, theirs))
+            process.start()
+            theirs.close()
+            self.pipes[ours] = lane, process
+
+    def watch(self, tell):
+        """tell(text, tally of all lanes) until the last lane has ended. Whether it was interrupted."""
+        interrupted = False
+        while self.pipes:
+            try:
+                for pipe in multiprocessing.connection.wait(self.pipes):
+                    self._take(pipe, tell)
+            except KeyboardInterrupt:
+                interrupted = True
+                for _, process in self.pipes.values():
+                    process.terminate()
+        return interrupted
+
+    def _take(self, pipe, tell):
+        lane, process = self.pipes[pipe]
+        try:
+            text, self.tallies[lane] = pipe.recv()
+        except EOFError:
+            del self.pipes[pipe]
+            process.join()
+            if process.exitcode != 0:
+                raise ResultError(f"lane {lane} of the trials stopped with exit code {process.exitcode}") from None
+            return
+        tell(text, Tally.of_all(self.tallies))
+
+    def _run(self, lane, pipe):
+        """A terminal interrupts all its processes; lanes are told by SIGTERM, once. Programs under trial must not inherit a signal
+        that is ignored, so it is caught."""
+        signal.signal(signal.SIGINT, lambda *_: None)
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
+        tally = Tally()
+
+        def tell(text):
+            if os.getppid() != self.parent:
+                raise KeyboardInterrupt
+            pipe.send((text, tally))
+
+        try:
+            self.make(lane, tally, tell)
+            tell("")
+        except KeyboardInterrupt:
+            pipe.send(("", tally))
