@@ -38,6 +38,14 @@ void check_links(int bodies, std::span<const ConstraintLink> links) {
   }
 }
 
+void check_positions(std::size_t bodies, std::span<const double> position_m) {
+  if (position_m.empty()) return;
+  if (position_m.size() != 3 * bodies) refuse("size of position_m", position_m.size(), 3 * bodies);
+  for (std::size_t k = 0; k < position_m.size(); ++k)
+    if (!std::isfinite(position_m[k]))
+      refuse("position_m of body " + std::to_string(k / 3), position_m[k], "finite");
+}
+
 bool joins_two_bodies(const ConstraintLink& link) {
   return link.body_a >= 0 && link.body_b >= 0 && link.body_a != link.body_b;
 }
@@ -57,9 +65,12 @@ std::vector<int> row_starts(int bodies, std::span<const ConstraintLink> links) {
 }  // namespace
 
 BodyGraph::BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links,
-                     std::optional<int> step)
-    : mass_kg_(mass_kg.begin(), mass_kg.end()), step_(step) {
+                     std::optional<int> step, std::span<const double> position_m)
+    : mass_kg_(mass_kg.begin(), mass_kg.end()),
+      step_(step),
+      position_m_(position_m.begin(), position_m.end()) {
   check_masses(mass_kg);
+  check_positions(mass_kg.size(), position_m);
   const int n = body_count();
   check_links(n, links);
   const std::vector<int> start = row_starts(n, links);
@@ -122,6 +133,8 @@ std::vector<BodyGraph> BodyGraph::induced(std::span<const int> set_of_body, int 
       graph.rows_.push_back(rows_[k]);
     }
     graph.add_body(mass_kg_[i]);
+    if (has_positions())
+      for (const int axis : {0, 1, 2}) graph.position_m_.push_back(position_m(i, axis));
   }
   return graphs;
 }

@@ -5,7 +5,7 @@
 //   pairs        always 1
 //   constraints  joints + contact points between the two bodies
 //   rows         scalar constraint rows between the two bodies
-// Static geometry is no node; constraints with it add to no degree, edge or gain.
+// Static geometry is no node; constraints with it add to no degree, edge or gain. Bodies may have positions.
 #pragma once
 
 #include <optional>
@@ -32,15 +32,22 @@ class BodyGraph {
   // edge. mass_kg: (n). Throws std::invalid_argument naming the link when a body index is outside [-1, n) or
   // rows < 1, naming the body when a mass is not finite and positive, and when all rows together exceed the
   // range of int (so that no weight, degree, cut or gain can overflow). step: of the run that the graph was
-  // taken from, where there is one.
+  // taken from, where there is one. position_m: (n, 3) centres of the bodies, or empty where nobody knows them;
+  // throws naming the number that is not finite, and for another size.
   BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links,
-            std::optional<int> step = std::nullopt);
+            std::optional<int> step = std::nullopt, std::span<const double> position_m = {});
 
   std::optional<int> step() const { return step_; }
 
   int body_count() const { return static_cast<int>(mass_kg_.size()); }
   int edge_count() const { return static_cast<int>(neighbour_.size()) / 2; }
   double mass_kg(int body) const { return mass_kg_[body]; }
+
+  bool has_positions() const { return !position_m_.empty(); }
+  // axis: 0 to 2. Only where there are positions.
+  double position_m(int body, int axis) const {
+    return position_m_[3 * static_cast<std::size_t>(body) + axis];
+  }
 
   // Degree = number of distinct adjacent bodies.
   int degree(int body) const { return first_[body + 1] - first_[body]; }
@@ -71,6 +78,7 @@ class BodyGraph {
   std::vector<int> constraints_;  // (2 edges)
   std::vector<int> rows_;         // (2 edges)
   std::optional<int> step_;
+  std::vector<double> position_m_;  // (n, 3), or empty
 };
 
 // Connected components: the islands of the step. Returns their number and, if asked, one island id per body,

@@ -61,6 +61,7 @@ struct Exchange {
 class ExchangeHeap {
  public:
   bool empty() const { return entries_.empty(); }
+  void clear() { entries_.clear(); }
   void push(const Exchange& exchange);
   Exchange pop();
 

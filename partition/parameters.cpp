@@ -50,7 +50,7 @@ const Parameter& edge_weight() {
                                    .kind = Kind::word,
                                    .default_value = "rows",
                                    .words = {"pairs", "constraints", "rows"},
-                                   .help = "unit of edge weights in mix, kl and fm",
+                                   .help = "unit of edge weights",
                                    .source = "partition/README.md"};
   return parameter;
 }
@@ -91,8 +91,49 @@ const Parameter& max_growth() {
                                    .kind = Kind::number,
                                    .default_value = "0.2",
                                    .range = {0, kInfinity},
-                                   .help = "fm lets a part grow to (1 + this) max-bodies",
+                                   .help = "a part may grow to (1 + this) max-bodies",
                                    .source = kRefining};
+  return parameter;
+}
+
+const Parameter& partition_seed() {
+  static const Parameter parameter{.name = "partition-seed",
+                                   .kind = Kind::integer,
+                                   .default_value = "1",
+                                   .range = {0, kInfinity},
+                                   .help = "seed of a partitioner that draws at random",
+                                   .source = "partition/README.md"};
+  return parameter;
+}
+
+const Parameter& trials() {
+  static const Parameter parameter{.name = "trials",
+                                   .kind = Kind::integer,
+                                   .default_value = "100",
+                                   .range = {1, kInfinity},
+                                   .help = "trials of karger, of which the best counts",
+                                   .source = "partition/README.md"};
+  return parameter;
+}
+
+const Parameter& ufactor() {
+  static const Parameter parameter{
+      .name = "ufactor",
+      .kind = Kind::integer,
+      .default_value = "0",
+      .range = {0, kInfinity},
+      .help = "thousandths by which METIS may let a part exceed its share; 0: those of max-growth",
+      .source = "METIS 5.1 manual"};
+  return parameter;
+}
+
+const Parameter& scotch_strategy() {
+  static const Parameter parameter{.name = "scotch-strategy",
+                                   .kind = Kind::word,
+                                   .default_value = "default",
+                                   .words = {"default", "quality", "speed", "balance", "safety"},
+                                   .help = "what SCOTCH cares for most",
+                                   .source = "SCOTCH 7.0 user's guide"};
   return parameter;
 }
 

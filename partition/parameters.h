@@ -1,5 +1,5 @@
-// Parameters that several partitioners and refiners share, declared once, and what they mean. A parameter of
-// one algorithm alone stands in its registry row.
+// Parameters that several partitioners and refiners share, or whose words stand for an enumeration, declared
+// once, and what they mean. Any other parameter of one algorithm alone stands in its registry row.
 #pragma once
 
 #include "harness/base/parameter.h"
@@ -23,6 +23,10 @@ const Parameter& as_printed();    // the paper to the letter
 const Parameter& tau_mr();
 const Parameter& tau_mix();
 const Parameter& max_growth();
+const Parameter& partition_seed();  // of the dice, for partitioners that draw
+const Parameter& trials();          // of which the best counts
+const Parameter& ufactor();
+const Parameter& scotch_strategy();
 
 }  // namespace parameters
 }  // namespace cleave

@@ -1,6 +1,7 @@
 #include "partition/partition.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -62,6 +63,16 @@ int count_cover_bodies(const BodyGraph& graph, std::span<const int> part_of_body
 
 }  // namespace
 
+Partition numbered_by_lowest_body(std::span<const int> label_of_body) {
+  Partition partition;
+  std::vector<int> part_of_label(label_of_body.size(), -1);
+  for (const int label : label_of_body) {
+    if (part_of_label[label] < 0) part_of_label[label] = partition.part_count++;
+    partition.part_of_body.push_back(part_of_label[label]);
+  }
+  return partition;
+}
+
 PartitionMetrics measure_partition(const BodyGraph& graph, std::span<const int> part_of_body) {
   check_part_ids(graph, part_of_body);
   const int n = graph.body_count();
@@ -103,6 +114,11 @@ long cut_weight(const BodyGraph& graph, std::span<const int> part_of_body, EdgeW
     }
   }
   return cut;
+}
+
+int most_grown_bodies(int max_bodies, double max_growth) {
+  const double most = std::numeric_limits<int>::max();
+  return static_cast<int>(std::min(most, std::floor((1 + max_growth) * max_bodies + 1e-9)));
 }
 
 std::vector<int> part_sizes(const Partition& partition) {

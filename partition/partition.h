@@ -15,6 +15,9 @@ struct Partition {
   int part_count = 0;
 };
 
+// Parts numbered by their lowest body. label_of_body: (n) equal within a part and nowhere else, in [0, n).
+Partition numbered_by_lowest_body(std::span<const int> label_of_body);
+
 // All numbers are computed from scratch from the graph and the part ids, never kept up to date by an
 // algorithm: they are what the incremental gains of the refiners are checked against.
 struct PartitionMetrics {
@@ -36,6 +39,14 @@ PartitionMetrics measure_partition(const BodyGraph& graph, std::span<const int> 
 
 // Total weight of the edges whose ends lie in different parts.
 long cut_weight(const BodyGraph& graph, std::span<const int> part_of_body, EdgeWeight unit);
+
+// Most bodies of a part of max_bodies that may grow: floor((1 + max_growth) max_bodies + 1e-9).
+int most_grown_bodies(int max_bodies, double max_growth);
+
+// ceil(bodies / max_bodies): how many parts are wanted.
+inline int wanted_parts(int bodies, int max_bodies) {
+  return bodies / max_bodies + (bodies % max_bodies > 0);
+}
 
 // Part sizes in bodies, by part id. Every id must lie in [0, part_count).
 std::vector<int> part_sizes(const Partition& partition);

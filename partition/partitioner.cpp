@@ -27,6 +27,16 @@ std::string find_fault(const BodyGraph& graph, const Partition& partition) {
   return "";
 }
 
+// most_bodies: of a part.
+std::string find_large_part(const Partition& partition, int most_bodies) {
+  const std::vector<int> sizes = part_sizes(partition);
+  for (int part = 0; part < partition.part_count; ++part)
+    if (sizes[part] > most_bodies)
+      return "part " + std::to_string(part) + " has " + std::to_string(sizes[part]) +
+             " bodies, promised were at most " + std::to_string(most_bodies);
+  return "";
+}
+
 // A growing part takes what it touches until it is full.
 std::string find_early_end(const BodyGraph& graph, const Partition& partition, int max_bodies) {
   const std::vector<int> sizes = part_sizes(partition);
@@ -43,16 +53,12 @@ std::string find_early_end(const BodyGraph& graph, const Partition& partition, i
 }  // namespace
 
 std::string find_broken_promise(const BodyGraph& graph, const Partition& partition,
-                                const PartsPromise& promise, std::optional<int> max_bodies) {
-  const std::string fault = find_fault(graph, partition);
+                                const PartsPromise& promise, std::optional<int> max_bodies,
+                                std::optional<int> grown_bodies) {
+  std::string fault = find_fault(graph, partition);
+  if (fault.empty() && promise.at_most_max_bodies) fault = find_large_part(partition, max_bodies.value());
+  if (fault.empty() && promise.at_most_grown_bodies) fault = find_large_part(partition, grown_bodies.value());
   if (!fault.empty()) return fault;
-  if (promise.at_most_max_bodies) {
-    const std::vector<int> sizes = part_sizes(partition);
-    for (int part = 0; part < partition.part_count; ++part)
-      if (sizes[part] > max_bodies.value())
-        return "part " + std::to_string(part) + " has " + std::to_string(sizes[part]) +
-               " bodies, promised were at most " + std::to_string(*max_bodies);
-  }
   if (promise.contiguous && count_pieces(graph, partition.part_of_body) != partition.part_count)
     return "a part is not connected within itself";
   return promise.grown_in_order ? find_early_end(graph, partition, max_bodies.value()) : "";
@@ -60,7 +66,7 @@ std::string find_broken_promise(const BodyGraph& graph, const Partition& partiti
 
 Partition Partitioner::run(const BodyGraph& graph) const {
   Partition partition = do_run(graph);
-  assert(find_broken_promise(graph, partition, promise_, max_bodies_).empty());
+  assert(find_broken_promise(graph, partition, promise_, max_bodies_, grown_bodies_).empty());
   return partition;
 }
 

@@ -1,8 +1,8 @@
 // A partitioner splits the bodies of a step into parts.
 //
 // All five of the paper (Liu & Andrews 2022, section 3.1) grow parts with one loop (grow.h) and differ in the
-// body they choose next. Ties: lowest body index. To add one: a new file and a row in registry.cpp; the row
-// declares its parameters and promises what its parts are.
+// body they choose next; those that do not grow number their parts by the lowest body. Ties: lowest body index. To
+// add one: a new file and a row in registry.cpp; the row declares its parameters and promises what its parts are.
 #pragma once
 
 #include <optional>
@@ -17,10 +17,11 @@ namespace cleave {
 // What the parts of an algorithm always are. Whatever it promises, every body has one part and no part is
 // empty.
 struct PartsPromise {
-  bool contiguous = false;          // every part is connected within itself
-  bool at_most_max_bodies = false;  // no part has more bodies than its parameter max-bodies says
-  bool grown_in_order = false;      // ids in order of growth, each part as far as it goes: one of fewer than
-                                    // max-bodies bodies touches no later one
+  bool contiguous = false;            // every part is connected within itself
+  bool at_most_max_bodies = false;    // no part has more bodies than its parameter max-bodies says
+  bool at_most_grown_bodies = false;  // nor more than floor((1 + max-growth) max-bodies + 1e-9)
+  bool grown_in_order = false;  // ids in order of growth, each part as far as it goes: one of fewer than
+                                // max-bodies bodies touches no later one
 };
 
 // This graph cannot be split by this partitioner, though others can: one line that says why.
@@ -36,10 +37,13 @@ class Partitioner {
   // Throws CannotSplit.
   Partition run(const BodyGraph& graph) const;
 
-  // From its row, by make_partitioner (registry.h). max_bodies: its parameter of this name, if it has one.
-  void promise(const PartsPromise& promise, std::optional<int> max_bodies) {
+  // From its row, by make_partitioner (registry.h). max_bodies: its parameter of this name, if it has one;
+  // grown_bodies: what max-growth makes of it, if it has that too.
+  void promise(const PartsPromise& promise, std::optional<int> max_bodies,
+               std::optional<int> grown_bodies = std::nullopt) {
     promise_ = promise;
     max_bodies_ = max_bodies;
+    grown_bodies_ = grown_bodies;
   }
   std::optional<int> max_bodies() const { return max_bodies_; }
   const PartsPromise& promised() const { return promise_; }
@@ -48,11 +52,12 @@ class Partitioner {
   virtual Partition do_run(const BodyGraph& graph) const = 0;
 
   PartsPromise promise_;
-  std::optional<int> max_bodies_;
+  std::optional<int> max_bodies_, grown_bodies_;
 };
 
 // Empty, or the one thing that is wrong, in words: "part 3 has 30 bodies, promised were at most 25".
 std::string find_broken_promise(const BodyGraph& graph, const Partition& partition,
-                                const PartsPromise& promise, std::optional<int> max_bodies);
+                                const PartsPromise& promise, std::optional<int> max_bodies,
+                                std::optional<int> grown_bodies = std::nullopt);
 
 }  // namespace cleave

@@ -1,6 +1,7 @@
 #include "partition/registry.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "harness/base/names.h"
@@ -13,12 +14,37 @@ std::unique_ptr<Partitioner> make_maxdp(const Settings& settings);
 std::unique_ptr<Partitioner> make_bfs(const Settings& settings);
 std::unique_ptr<Partitioner> make_mass_ratio(const Settings& settings);
 std::unique_ptr<Partitioner> make_mix(const Settings& settings);
+std::unique_ptr<Partitioner> make_multilevel(const Settings& settings);
+std::unique_ptr<Partitioner> make_single(const Settings& settings);
+std::unique_ptr<Partitioner> make_random(const Settings& settings);
+std::unique_ptr<Partitioner> make_geometric(const Settings& settings);
+std::unique_ptr<Partitioner> make_karger(const Settings& settings);
 std::unique_ptr<Partitioner> make_file(const Settings& settings);
 std::string file_content(const Settings& settings);
+
+// The adapter of a library is compiled where the library was found (CMakeLists.txt).
+#ifdef CLEAVE_METIS
+std::unique_ptr<Partitioner> make_metis_recursive(const Settings& settings);
+std::unique_ptr<Partitioner> make_metis_kway(const Settings& settings);
+constexpr const char* kMetisUnavailable = "";
+#else
+constexpr std::unique_ptr<Partitioner> (*make_metis_recursive)(const Settings&) = nullptr;
+constexpr std::unique_ptr<Partitioner> (*make_metis_kway)(const Settings&) = nullptr;
+constexpr const char* kMetisUnavailable = "install libmetis-dev and build again";
+#endif
+#ifdef CLEAVE_SCOTCH
+std::unique_ptr<Partitioner> make_scotch(const Settings& settings);
+constexpr const char* kScotchUnavailable = "";
+#else
+constexpr std::unique_ptr<Partitioner> (*make_scotch)(const Settings&) = nullptr;
+constexpr const char* kScotchUnavailable = "install libscotch-dev and build again";
+#endif
 
 std::unique_ptr<Refiner> make_none(const Settings& settings);
 std::unique_ptr<Refiner> make_kernighan_lin(const Settings& settings);
 std::unique_ptr<Refiner> make_fiduccia_mattheyses(const Settings& settings);
+std::unique_ptr<Refiner> make_kl_hill(const Settings& settings);
+std::unique_ptr<Refiner> make_fm_hill(const Settings& settings);
 
 namespace {
 
@@ -26,6 +52,7 @@ using namespace parameters;
 
 constexpr const char* kGrowing = "Liu & Andrews 2022, section 3.1";
 constexpr const char* kRefining = "Liu & Andrews 2022, section 3.2";
+constexpr const char* kOfMetis = "Karypis & Kumar 1998";
 constexpr PartsPromise kGrown{.contiguous = true, .at_most_max_bodies = true, .grown_in_order = true};
 // mr closes a part where masses differ too much.
 constexpr PartsPromise kClosedEarly{.contiguous = true, .at_most_max_bodies = true};
@@ -81,6 +108,22 @@ std::span<const PartitionerEntry> partitioners() {
        kGrown,
        true,
        make_mix},
+      {{"multilevel",
+        "multilevel bisection by recursion",
+        "Karypis & Kumar 1998",
+        {max_bodies(),
+         max_growth(),
+         edge_weight(),
+         partition_seed(),
+         {.name = "effort",
+          .kind = Parameter::Kind::word,
+          .default_value = "fast",
+          .words = {"fast", "best"},
+          .help = "few starts on joined bodies, or several on all",
+          .source = "partition/README.md"}}},
+       {.at_most_grown_bodies = true},
+       false,
+       make_multilevel},
       {{"file",
         "parts that another program made",
         "METIS 5.1 manual, partition file",
@@ -91,6 +134,65 @@ std::span<const PartitionerEntry> partitioners() {
        {},
        false,
        make_file},
+      {{"single", "one part with all bodies, as a control", "partition/README.md"}, {}, false, make_single},
+      {{"random",
+        "bodies dealt at random into equal parts, as a control",
+        "partition/README.md",
+        {max_bodies(), partition_seed()}},
+       {.at_most_max_bodies = true},
+       false,
+       make_random},
+      {{"geometric",
+        "halve the longest side of the bounding box of the centres, again and again",
+        "Berger & Bokhari 1987",
+        {max_bodies()}},
+       {.at_most_max_bodies = true},
+       false,
+       make_geometric},
+      {{"karger",
+        "contract edges at random, best of several trials",
+        "Karger 1993; Karger & Stein 1996",
+        {max_bodies(),
+         max_growth(),
+         edge_weight(),
+         partition_seed(),
+         trials(),
+         {.name = "karger-method",
+          .kind = Parameter::Kind::word,
+          .default_value = "contract",
+          .words = {"contract", "recursive-bisection"},
+          .help = "contract to the wanted number of parts, or halve by least cuts until parts are small",
+          .source = "partition/README.md"}}},
+       {.contiguous = true, .at_most_grown_bodies = true},
+       false,
+       make_karger},
+      {{"metis-recursive",
+        "halve the graph again and again, by METIS",
+        kOfMetis,
+        {max_bodies(), max_growth(), edge_weight(), partition_seed(), ufactor()},
+        nullptr,
+        kMetisUnavailable},
+       {},
+       false,
+       make_metis_recursive},
+      {{"metis-kway",
+        "all parts at once, by METIS",
+        kOfMetis,
+        {max_bodies(), max_growth(), edge_weight(), partition_seed(), ufactor()},
+        nullptr,
+        kMetisUnavailable},
+       {},
+       false,
+       make_metis_kway},
+      {{"scotch",
+        "all parts at once, by SCOTCH",
+        "Pellegrini & Roman 1996",
+        {max_bodies(), max_growth(), edge_weight(), partition_seed(), scotch_strategy()},
+        nullptr,
+        kScotchUnavailable},
+       {},
+       false,
+       make_scotch},
   };
   return table;
 }
@@ -110,16 +212,39 @@ std::span<const RefinerEntry> refiners() {
         {max_growth(), edge_weight(), as_printed()}},
        true,
        make_fiduccia_mattheyses},
+      {{"kl-hill",
+        "swap bodies of two parts in passes that may raise the cut on their way",
+        "Kernighan & Lin 1970",
+        {edge_weight()}},
+       false,
+       make_kl_hill},
+      {{"fm-hill",
+        "move single bodies in passes that may raise the cut on their way",
+        "Fiduccia & Mattheyses 1982; Sanchis 1989",
+        {max_growth(),
+         edge_weight(),
+         {.name = "patience",
+          .kind = Parameter::Kind::integer,
+          .default_value = "50",
+          .range = {1, std::numeric_limits<double>::infinity()},
+          .help = "moves of a pass without a lower cut before it ends",
+          .source = "partition/README.md"}}},
+       false,
+       make_fm_hill},
   };
   return table;
 }
 
 std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm) {
   const PartitionerEntry& entry = find_row(partitioners(), "partitioner", algorithm.name);
+  check_available("partitioner", entry);
   std::unique_ptr<Partitioner> made = entry.make(algorithm.settings);
-  const bool bounded = algorithm.settings.has("max-bodies");
-  made->promise(entry.promise,
-                bounded ? std::optional(algorithm.settings.integer("max-bodies")) : std::nullopt);
+  const Settings& settings = algorithm.settings;
+  std::optional<int> max_bodies, grown_bodies;
+  if (settings.has("max-bodies")) max_bodies = settings.integer("max-bodies");
+  if (max_bodies && settings.has("max-growth"))
+    grown_bodies = most_grown_bodies(*max_bodies, settings.number("max-growth"));
+  made->promise(entry.promise, max_bodies, grown_bodies);
   return made;
 }
 

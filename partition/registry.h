@@ -15,7 +15,7 @@ namespace cleave {
 struct PartitionerEntry : AlgorithmEntry {
   PartsPromise promise;
   bool of_paper;  // one of Liu & Andrews 2022: what --partitioner paper names
-  std::unique_ptr<Partitioner> (*make)(const Settings& settings);
+  std::unique_ptr<Partitioner> (*make)(const Settings& settings);  // null: unavailable
 };
 
 struct RefinerEntry : AlgorithmEntry {

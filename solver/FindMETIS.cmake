@@ -1,13 +1,3 @@
-# METIS (nested dissection), which brings no CMake package of its own: the target METIS::METIS. Installed beside
-# cleaveConfig.cmake, for whoever links cleave::solver.
-find_path(METIS_INCLUDE_DIR metis.h)
-find_library(METIS_LIBRARY metis)
-include(FindPackageHandleStandardArgs)
-find_package_handle_standard_args(METIS REQUIRED_VARS METIS_LIBRARY METIS_INCLUDE_DIR)
-if(METIS_FOUND AND NOT TARGET METIS::METIS)
-  add_library(METIS::METIS UNKNOWN IMPORTED)
-  set_target_properties(METIS::METIS PROPERTIES IMPORTED_LOCATION ${METIS_LIBRARY}
-                        INTERFACE_SYSTEM_INCLUDE_DIRECTORIES ${METIS_INCLUDE_DIR}
-                        INTERFACE_INCLUDE_DIRECTORIES ${METIS_INCLUDE_DIR})
-endif()
-mark_as_advanced(METIS_INCLUDE_DIR METIS_LIBRARY)
+# METIS (nested dissection): the target METIS::METIS.
+include(${CMAKE_CURRENT_LIST_DIR}/find_plain_library.cmake)
+find_plain_library(METIS metis.h metis)

@@ -4,7 +4,6 @@
 #include <cassert>
 
 #include "solver/linear/dense_block.h"
-#include "solver/linear/small_cholesky.h"
 
 namespace cleave {
 namespace {
@@ -150,14 +149,7 @@ FrontTiles BlockCholesky::front(int supernode) {
 bool BlockCholesky::factor_panel(const Supernode& s) {
   const int ld = 6 * s.row_count;
   double* panel = panels_.data() + s.panel_offset;
-  for (int k = 0; k < s.width; ++k) {
-    double* diagonal = panel + 6 * k + 6L * k * ld;
-    subtract_product(ld - 6 * k, 6 * k, panel + 6 * k, ld, panel + 6 * k, ld, diagonal, ld);
-    double inverse[36];
-    if (!invert_cholesky<6>(diagonal, ld, inverse, 6)) return false;
-    multiply_by_transpose(ld - 6 * k - 6, inverse, 6, diagonal + 6, ld);
-    for (int c = 0; c < 6; ++c) std::copy(inverse + 6 * c, inverse + 6 * c + 6, diagonal + c * ld);
-  }
+  if (!eliminate_columns(s.row_count, s.width, panel, ld)) return false;
   const int below = s.rows_below(), update_ld = 6 * below;
   const double* rows = panel + 6 * s.width;
   double* update = updates_.data() + s.update_offset;

@@ -1,6 +1,7 @@
 #include "solver/block_matrix.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -59,6 +60,7 @@ void BlockMatrix::count(MemoryCount& memory) const {
                    entry_first_, late_places_, late_branch_, late_first_, late_slots_, group_branch_,
                    group_order_, edges_);
   memory.add<double>(36, late_places_.size());
+  memory.add<double>(1, step_->row_count());
   memory.add<char>(late_places_.size());
 }
 
@@ -67,6 +69,7 @@ void BlockMatrix::allocate() {
   free_if_short(late_blocks_, 36 * late_places_.size());
   late_blocks_.resize(36 * late_places_.size());
   late_any_.resize(late_places_.size());
+  weights_.resize(step_->row_count());
 }
 
 bool BlockMatrix::rebind(const PreparedStep& step, std::span<const int> local_of_body,
@@ -181,6 +184,18 @@ void BlockMatrix::assemble(const WeightedRows& rows, int branch) {
     add_block(panels + entry.ab.offset, entry.ab.leading_dimension, gram + 6, 12, entry.ab.transposed);
     if (entry.late >= 0)
       copy_block(gram + (entry.a_is_late ? 0 : 78), late_blocks_.data() + 36L * entry.late);
+  }
+}
+
+void BlockMatrix::take_weights(std::span<const double> d, const Chunk& groups, std::span<char> changed) {
+  for (int g = groups.first; g < groups.last; ++g) {
+    const RowGroup& group = step_->groups()[g];
+    bool any = false;
+    for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
+      any |= weights_[r] != d[r];
+      weights_[r] = d[r];
+    }
+    if (any) std::atomic_ref(changed[group_branch_[g]]).store(1, std::memory_order_relaxed);
   }
 }
 

@@ -46,6 +46,9 @@ class BlockMatrix {
 
   // rows: of the whole problem, with their D.
   void assemble(const WeightedRows& rows, int branch);
+  // Of a whole step: keeps d (m) of the rows of these groups and sets changed[branch], of the branch that assembles it, where
+  // one is another than was kept before.
+  void take_weights(std::span<const double> d, const Chunk& groups, std::span<char> changed);
   // After assembly of all branches and factorisation of the child branches. False when a pivot is not positive.
   bool factor(int branch);
   // The same of a branch that is one supernode, in pieces; this one begins a strip of columns of its panel, the others are
@@ -84,9 +87,11 @@ class BlockMatrix {
   std::vector<int> entry_first_;                   // (branches + 1)
   std::vector<BlockCholesky::Place> late_places_;  // of the slots
   std::vector<int> late_branch_, late_first_, late_slots_;  // slots by the branch that they are kept for
-  std::vector<int> group_branch_, group_order_;  // scratch: branch of assembly of the groups, and by it
+  std::vector<int> group_branch_;  // branch of assembly, in the order in which the groups were given
+  std::vector<int> group_order_;   // scratch: their places by branch
   std::vector<double> late_blocks_;              // (slots, 6, 6)
   std::vector<char> late_any_;
+  std::vector<double> weights_;  // (m)
   std::vector<std::pair<int, int>> edges_;
 };
 

@@ -146,6 +146,8 @@ void BlockSymbolic::find_branches() {
     for (int i = branch.first; i <= branch.last; ++i) {
       before += supernodes_[i].flops();
       supernodes_[i].branch = static_cast<int>(b);
+      for (int k = 0; k < supernodes_[i].width; ++k)
+        branch.flops += columns_.flops(supernodes_[i].first_position + k);
       branch.most_rows_below = std::max(branch.most_rows_below, supernodes_[i].rows_below());
     }
   }

@@ -49,6 +49,7 @@ struct Branch {
   int end_position = 0;  // one past the root's columns
   double place =
       0;  // share of all work that comes before it, in [0, 1): branches near each other share a subtree
+  double flops = 0;         // as factor_flops(), of its columns
   int most_rows_below = 0;  // of its supernodes, in blocks
   long carry_offset = 0;    // in doubles: 6 for each row below the root's columns
 };

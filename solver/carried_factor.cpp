@@ -52,6 +52,7 @@ bool CarriedFactor::factor_anew(ParallelTasks& tasks) {
   fits_ = true;
   ++counts_.factorizations;
   has_factor_ = is_own_ = is_of_step_ = kernel_->factor({system_.rows().d(), blocks_}, tasks);
+  counts_.mflop_done += kernel_->done_mflop();
   expected_changes_ = 0;
   factored_d_.assign(system_.rows().d().begin(), system_.rows().d().end());
   return has_factor_;

@@ -32,6 +32,7 @@ class CarriedFactor : public Kernel {
   // Of one step; factor_reuses: systems that were solved without a factorisation of their own.
   struct Counts {
     int factorizations = 0, factor_reuses = 0, cg_iterations = 0;
+    double mflop_done = 0;  // of the factorisations
   };
   // changed_rows: how many of the step before ended on another side than they had begun; as many are expected now.
   void begin_step(int changed_rows);

@@ -298,6 +298,7 @@ void DirectSolver::solve_in_memory(const StepProblem& problem, const Parts& part
     summary.factorizations = carried_->counts().factorizations;
     summary.factor_reuses = carried_->counts().factor_reuses;
     summary.cg_iterations = carried_->counts().cg_iterations;
+    summary.factor_mflop_done = carried_->counts().mflop_done;
   }
   summary.interface_unknowns = kernel_->interface_unknowns();
   summary.factor_mflop_local = kernel_->local_mflop();

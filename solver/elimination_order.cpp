@@ -4,11 +4,12 @@
 #include <metis.h>
 
 #include <cstdlib>
-#include <mutex>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "harness/base/metis_lock.h"
 
 namespace cleave {
 
@@ -38,11 +39,9 @@ void order_by_degree(const BlockGraph& graph, std::span<const int> constraint,
   if (status != CAMD_OK) throw std::logic_error("camd_order: status " + std::to_string(status));
 }
 
-// METIS draws from rand() of the C library, and where it finds no memory it ends the process: so one call at a time, and
-// none without room. METIS_NodeND would put handlers of its own in the place of the program's, METIS_NodeNDP does not.
+// Where METIS finds no memory it ends the process: so none without room. METIS_NodeND would put handlers of its own in the place of the program's, METIS_NodeNDP does not.
 void order_by_dissection(const BlockGraph& graph, std::span<int> node_at_position) {
-  static std::mutex one_at_a_time;
-  const std::scoped_lock lock(one_at_a_time);
+  const std::scoped_lock lock(metis_lock());
   int count = graph.node_count();
   if (count == 0) return;
   require_room(kDissectionBytes * (graph.first.size() + graph.adjacency.size()));

@@ -108,9 +108,11 @@ void FactorTasks::run_task(const FactorTask& task, BlockMatrix& matrix, std::vec
   }
 }
 
-void FactorTasks::run(Stage stage, BlockMatrix& matrix, std::vector<char>& factored,
-                      ParallelTasks& tasks) const {
-  tasks.run(stage, graph_, [&](int index) { run_task(tasks_[index], matrix, factored); });
+void FactorTasks::run(Stage stage, BlockMatrix& matrix, std::span<const char> changed,
+                      std::vector<char>& factored, ParallelTasks& tasks) const {
+  tasks.run(stage, graph_, [&](int index) {
+    if (changed[tasks_[index].branch]) run_task(tasks_[index], matrix, factored);
+  });
 }
 
 void FactorTasks::count(MemoryCount& memory) const {

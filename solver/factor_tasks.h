@@ -21,8 +21,10 @@ class FactorTasks {
  public:
   // Of these branches, ascending; what others they wait for is done.
   void list(const BlockSymbolic& symbolic, std::span<const int> branches);
-  // factored: of all branches, 1 where it was; those that meet a pivot that is not positive, and all above them, get 0.
-  void run(Stage stage, BlockMatrix& matrix, std::vector<char>& factored, ParallelTasks& tasks) const;
+  // By branch, of all: changed, 1 where it is to be factored, others stand as they are; factored, 1 where a branch is.
+  // Those that meet a pivot that is not positive, and all above them, get 0.
+  void run(Stage stage, BlockMatrix& matrix, std::span<const char> changed, std::vector<char>& factored,
+           ParallelTasks& tasks) const;
   int task_count() const { return static_cast<int>(tasks_.size()); }
   void count(MemoryCount& memory) const;
 

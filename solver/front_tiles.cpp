@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "solver/linear/dense_block.h"
-#include "solver/linear/small_cholesky.h"
 
 namespace cleave {
 namespace {
@@ -50,16 +49,8 @@ bool FrontTiles::run(const TileOperation& operation) {
 }
 
 bool FrontTiles::factor_diagonal(int step) {
-  const int begin = strips_.begin(step), end = strips_.end(step), ld = 6 * row_count_;
-  for (int k = begin; k < end; ++k) {
-    double* diagonal = at(k, k);
-    subtract_product(6 * (end - k), 6 * (k - begin), at(k, begin), ld, at(k, begin), ld, diagonal, ld);
-    double inverse[36];
-    if (!invert_cholesky<6>(diagonal, ld, inverse, 6)) return false;
-    multiply_by_transpose(6 * (end - k - 1), inverse, 6, diagonal + 6, ld);
-    for (int c = 0; c < 6; ++c) std::copy(inverse + 6 * c, inverse + 6 * c + 6, diagonal + c * ld);
-  }
-  return true;
+  const int begin = strips_.begin(step), columns = strips_.end(step) - begin;
+  return eliminate_columns(columns, columns, at(begin, begin), 6 * row_count_);
 }
 
 void FrontTiles::solve_below(int step, int row) {

@@ -52,6 +52,15 @@ class ParallelTasks {
     run(static_cast<int>(chunks.size()), [&](int i) { task(chunks[i]); });
   }
 
+  // The same of two lists, in one stage.
+  template <class Chunk, class FirstTask, class SecondTask>
+  void run_over(std::span<const Chunk> first, const FirstTask& first_task, std::span<const Chunk> second,
+                const SecondTask& second_task) {
+    const int count = static_cast<int>(first.size());
+    run(count + static_cast<int>(second.size()),
+        [&](int i) { i < count ? first_task(first[i]) : second_task(second[i - count]); });
+  }
+
   // The tasks of a graph, which must stay as it is until the solve has ended.
   template <class Task>
   void run(Stage stage, const TaskGraph& graph, const Task& task) {

@@ -40,6 +40,7 @@ void PreparedStep::run(std::span<const Chunk> chunks, const Task& task) const {
 }
 
 void PreparedStep::prepare(const StepProblem& problem, ParallelTasks* tasks) {
+  ++preparations_;
   problem_ = &problem;
   tasks_ = tasks;
   const int n = body_count(), m = row_count();

@@ -47,6 +47,8 @@ class PreparedStep {
     const RowGroup& end = groups_[chunk.last - 1];
     return {groups_[chunk.first].first_row, end.first_row + end.row_count};
   }
+  // How often prepare() was called: numbers of J and M stay while this does.
+  long preparations() const { return preparations_; }
   std::span<const double> inverse_mass() const { return inverse_mass_; }  // (n, 6, 6)
   // (m, 12) rows of M^-1 J^T, laid out as the Jacobian.
   std::span<const double> mass_jacobian() const { return mass_jacobian_; }
@@ -92,6 +94,7 @@ class PreparedStep {
   std::vector<Chunk> group_chunks_, body_chunks_;
   mutable std::vector<double> group_sums_;  // scratch: (groups, 12)
   std::vector<double> inverse_mass_, mass_jacobian_, diagonal_;
+  long preparations_ = 0;
   double velocity_scale_ = 1, least_relative_compliance_ = 0;
 };
 

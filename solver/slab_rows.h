@@ -7,10 +7,10 @@
 
 namespace cleave {
 
-// All that a sweep needs of a row, in two cache lines; lambda_r - w_r / d_r = kept lambda_r + push - (J_r / d_r) v. The
-// numbers of a body are followed by two more: zeros, but in J / d, where a velocity's are zero too.
+// All that a sweep needs of a row, in two cache lines; lambda_r - w_r / d = kept lambda_r + push - (J_r / d) v
+// with d = d_r / omega. The numbers of a body are followed by two more: zeros, but in J / d, where a velocity's are zero too.
 struct alignas(64) SlabRow {
-  float jacobian_a[8], jacobian_b[8];  // J_r / d_r
+  float jacobian_a[8], jacobian_b[8];  // J_r / d
   float mass_jacobian_a[8], mass_jacobian_b[8];
 
   float& kept() { return jacobian_a[6]; }

@@ -15,6 +15,10 @@ constexpr int kSlabRows = 600;   // about so many in a slab: five microseconds o
 constexpr int kWordColors = 64;  // colours in one word of used_colors_
 constexpr double kLastPlace = 1 - 1e-9;
 
+signed char side_of(const SlabRow& row, float impulse) {
+  return static_cast<signed char>(impulse <= row.lower() ? -1 : impulse >= row.upper() ? 1 : 0);
+}
+
 }  // namespace
 
 void SlabSweeps::bind(const PreparedStep& step, ParallelTasks& tasks) {
@@ -183,6 +187,8 @@ void SlabSweeps::assign_places(const PreparedStep& step) {
   }
   rows_.resize(place);
   impulse_.resize(place);
+  side_.resize(place);
+  changed_.resize(set_count());
 }
 
 void SlabSweeps::pack_rows(const PreparedStep& step, int set) {
@@ -198,7 +204,7 @@ void SlabSweeps::pack_rows(const PreparedStep& step, int set) {
       const int r = group.first_row + k;
       SlabRow& row = rows_[place_of_group_[g] + k];
       row = {};
-      const double inverse = 1 / step.diagonal()[r];
+      const double inverse = kOverRelaxation / step.diagonal()[r];
       for (int c = 0; c < 6; ++c) {
         row.jacobian_a[c] = static_cast<float>(p.jacobian[12L * r + c] * inverse);
         row.jacobian_b[c] = static_cast<float>(p.jacobian[12L * r + 6 + c] * inverse);
@@ -217,15 +223,12 @@ void SlabSweeps::pack_rows(const PreparedStep& step, int set) {
 template <class ForBody, class ForGroup>
 void SlabSweeps::run_over_chunks(ParallelTasks& tasks, const ForBody& for_body,
                                  const ForGroup& for_group) const {
-  const auto bodies = step_->body_chunks(), groups = step_->group_chunks();
-  const int body_tasks = static_cast<int>(bodies.size());
-  tasks.run(body_tasks + static_cast<int>(groups.size()), [&](int i) {
-    if (i < body_tasks) {
-      for (int body = bodies[i].first; body < bodies[i].last; ++body) for_body(body);
-    } else {
-      for (int g = groups[i - body_tasks].first; g < groups[i - body_tasks].last; ++g) for_group(g);
-    }
-  });
+  const auto over = [](const auto& action) {
+    return [&action](const Chunk& chunk) {
+      for (int i = chunk.first; i < chunk.last; ++i) action(i);
+    };
+  };
+  tasks.run_over(step_->body_chunks(), over(for_body), step_->group_chunks(), over(for_group));
 }
 
 void SlabSweeps::take_in(std::span<const double> impulse, std::span<const double> v, ParallelTasks& tasks) {
@@ -236,8 +239,11 @@ void SlabSweeps::take_in(std::span<const double> impulse, std::span<const double
   };
   const auto take_group = [&](int g) {
     const RowGroup& group = step_->groups()[g];
-    for (int k = 0; k < group.row_count; ++k)
-      impulse_[place_of_group_[g] + k] = static_cast<float>(impulse[group.first_row + k]);
+    for (int k = 0; k < group.row_count; ++k) {
+      const int place = place_of_group_[g] + k;
+      impulse_[place] = static_cast<float>(impulse[group.first_row + k]);
+      side_[place] = side_of(rows_[place], impulse_[place]);
+    }
   };
   run_over_chunks(tasks, take_body, take_group);
 }
@@ -263,9 +269,22 @@ void SlabSweeps::give_out(std::span<double> impulse, std::span<double> v, Parall
   run_over_chunks(tasks, give_body, give_group);
 }
 
-void SlabSweeps::run(int sweeps, std::span<double> impulse, std::span<double> v, ParallelTasks& tasks,
-                     const std::function<void()>& beside) {
-  assert(sweeps <= kMostSweeps);
+// How many rows of the set changed sides.
+int SlabSweeps::update_sides(int set) {
+  const int first = group_first_[color_first_[set]], last = group_first_[color_first_[set + 1]];
+  if (first == last) return 0;
+  const int end = place_of_group_[groups_[last - 1]] + step_->groups()[groups_[last - 1]].row_count;
+  int changed = 0;
+  for (int place = place_of_group_[groups_[first]]; place < end; ++place) {
+    const signed char side = side_of(rows_[place], impulse_[place]);
+    changed += side != side_[place];
+    side_[place] = side;
+  }
+  return changed;
+}
+
+int SlabSweeps::run(int sweeps, ParallelTasks& tasks, const std::function<void()>& beside) {
+  assert(sweeps > 0 && sweeps <= kMostSweeps);
   const SlabArrays arrays{step_->groups(),
                           place_of_body_.data(),
                           place_of_group_.data(),
@@ -273,15 +292,15 @@ void SlabSweeps::run(int sweeps, std::span<double> impulse, std::span<double> v,
                           impulse_.data(),
                           bodies_.data(),
                           static_cast<int>(place_of_body_.size())};
-  take_in(impulse, v, tasks);
   tasks.run(Stage::predict, graph_, [&](int task) {
     if (task == kMostSweeps * set_count()) return beside();
-    if (task / set_count() >= sweeps) return;
+    const int sweep = task / set_count(), set = task % set_count();
+    if (sweep >= sweeps) return;
     check_stop(tasks.stop());
-    const int set = task % set_count();
     for (int color = 0; color < color_count(set); ++color) visit_groups(arrays, groups_of(set, color));
+    if (sweep == sweeps - 1) changed_[set] = update_sides(set);
   });
-  give_out(impulse, v, tasks);
+  return std::accumulate(changed_.begin(), changed_.end(), 0);
 }
 
 }  // namespace cleave

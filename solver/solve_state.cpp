@@ -47,7 +47,9 @@ bool SolveState::factor() {
   check_stop(options.stop);
   analyze();
   ++summary->factorizations;
-  return kernel->factor({weight, step->set().axes()}, tasks);
+  const bool factored = kernel->factor({weight, step->set().axes()}, tasks);
+  summary->factor_mflop_done += kernel->done_mflop();
+  return factored;
 }
 
 void SolveState::solve() {
@@ -118,13 +120,14 @@ double SolveState::residual() {
 int SolveState::find_violations(double tolerance) {
   StageTimer timer(tasks.clock(), Stage::check);
   const StepProblem& problem = step->problem();
+  const std::span<const double> diagonal = step->diagonal();
+  // Without branches, which would be guessed wrong. 0 times a bound that is infinite is beyond nothing.
   const auto is_violated = [&](int r) {
-    const double lower = problem.lower[r], upper = problem.upper[r];
-    if (lower == upper) return false;
-    const double reach = tolerance / step->diagonal()[r];
-    return state[r] == RowState::free    ? impulse[r] < lower - reach || impulse[r] > upper + reach
-           : state[r] == RowState::lower ? slack[r] < -tolerance
-                                         : slack[r] > tolerance;
+    const double lower = problem.lower[r], upper = problem.upper[r], d = diagonal[r];
+    const bool out = ((lower - impulse[r]) * d > tolerance) | ((impulse[r] - upper) * d > tolerance);
+    const bool leaves_lower = slack[r] < -tolerance, leaves_upper = slack[r] > tolerance;
+    const bool is_free = state[r] == RowState::free, is_lower = state[r] == RowState::lower;
+    return (lower != upper) & ((is_free & out) | (is_lower & leaves_lower) | (!is_free & !is_lower & leaves_upper));
   };
   row_is_violated.resize(impulse.size());
   run_over_rows([&](int first, int last, int) {

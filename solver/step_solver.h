@@ -60,6 +60,7 @@ struct SolveSummary {
   int interface_unknowns = 0;     // size of the interface system (rows, or 6 x bodies for schur-bodies)
   double factor_mflop_local = 0;  // per factorisation, without padding, subsystem interiors
   double factor_mflop_interface = 0;
+  double factor_mflop_done = 0;  // of all factorisations together, less what was kept of the one before
   // Of the factor and its workspace, 1e6 bytes, before it was allocated; NaN where nothing is factored.
   double factor_predicted_mb = std::numeric_limits<double>::quiet_NaN();
   StageTimes times;  // ms by named stage, total, and the modelled makespans

@@ -3,6 +3,7 @@
 #include <execinfo.h>
 #include <immintrin.h>
 #include <omp.h>
+#include <signal.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -107,6 +108,24 @@ void load_unwinder() {
   if (::backtrace(&caller, 1) == 0) throw std::bad_alloc();
 }
 
+// Threads made meanwhile, and those that they make, leave signals that ask the program to stop to the others: somebody
+// who holds such a signal back in his own thread (METIS needs that) would else find it taken here.
+class SignalsHeldBack {
+ public:
+  SignalsHeldBack() {
+    sigset_t stop;
+    ::sigemptyset(&stop);
+    for (const int signal : {SIGINT, SIGTERM}) ::sigaddset(&stop, signal);
+    ::pthread_sigmask(SIG_BLOCK, &stop, &before_);
+  }
+  SignalsHeldBack(const SignalsHeldBack&) = delete;
+  SignalsHeldBack& operator=(const SignalsHeldBack&) = delete;
+  ~SignalsHeldBack() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_;
+};
+
 }  // namespace
 
 WorkerTeam::WorkerTeam(int threads)
@@ -115,6 +134,7 @@ WorkerTeam::WorkerTeam(int threads)
   asked_look_out();  // its error belongs to the caller
   load_unwinder();
   check_threads(threads);
+  const SignalsHeldBack by_the_workers;
   // The first member of the region has the place of the caller and only waits for the others.
   workers_ = std::thread([this] {
 #pragma omp parallel num_threads(threads_)

@@ -54,6 +54,24 @@ void check_known(const std::string& option, const std::string& text, const Given
 
 }  // namespace
 
+std::string unavailable_text(const AlgorithmEntry& entry) {
+  return entry.unavailable.empty() ? "" : "is not in this build: " + entry.unavailable;
+}
+
+void check_available(const std::string& option, const AlgorithmEntry& entry) {
+  if (!entry.unavailable.empty()) reject(option, entry.name + (" " + unavailable_text(entry)));
+}
+
+std::string reason_to_leave_out(const AlgorithmEntry& entry, const Given& common) {
+  if (!entry.unavailable.empty()) return unavailable_text(entry);
+  std::vector<std::string> missing;
+  for (const Parameter& parameter : entry.parameters)
+    if (parameter.default_value.empty() &&
+        (parameter.kind == Parameter::Kind::path || !common.contains(parameter.name)))
+      missing.push_back(parameter.name);
+  return missing.empty() ? "" : "needs " + joined(missing);
+}
+
 std::string algorithm_name(const std::string& text) { return text.substr(0, text.find('@')); }
 
 Algorithm read_algorithm(const std::string& option, const std::string& text,

@@ -25,7 +25,16 @@ struct AlgorithmEntry {
   // returns a fingerprint of the content, which stands in texts and run ids where a path would. Throws
   // std::invalid_argument with one line that begins with the file.
   std::string (*content)(const Settings& settings) = nullptr;
+  // Of an algorithm of a library that was not there when this was built: what to do about it, "install
+  // libscotch-dev and build again". Such a row is listed and cannot be made.
+  std::string unavailable = {};
 };
+
+// "is not in this build: install libscotch-dev and build again"; empty for a row that is available.
+std::string unavailable_text(const AlgorithmEntry& entry);
+
+// Throws std::invalid_argument with one line for a row that is unavailable. option: what it begins with.
+void check_available(const std::string& option, const AlgorithmEntry& entry);
 
 // An algorithm with a value for each of its parameters.
 struct Algorithm {
@@ -36,6 +45,12 @@ struct Algorithm {
 
 // Who has a parameter, in words ("partitioner mr"), for errors; empty: nobody.
 using ParameterOwners = std::function<std::string(const std::string& parameter)>;
+
+// Why a list's `all` leaves a row out, in words ("needs path"); empty: it does not. An algorithm of a library
+// that this build lacks, or one with a parameter without default that nobody gave; a file is that of one
+// algorithm and given for no other.
+std::string reason_to_leave_out(const AlgorithmEntry& entry,
+                                const std::map<std::string, std::string>& common);
 
 // The part before the first @.
 std::string algorithm_name(const std::string& text);

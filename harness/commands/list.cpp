@@ -33,7 +33,9 @@ std::vector<Line> algorithm_lines(const std::string& plural) {
   for (const AlgorithmKind& kind : algorithm_kinds()) {
     if (kind.option != option) continue;
     for (const AlgorithmEntry& entry : kind.entries) {
-      lines.push_back({entry.name, entry.help, entry.reference});
+      const std::string unavailable = unavailable_text(entry);
+      lines.push_back(
+          {entry.name, entry.help + (unavailable.empty() ? "" : "; " + unavailable), entry.reference});
       for (const Parameter& parameter : entry.parameters) lines.push_back(parameter_line(parameter));
     }
   }

@@ -70,9 +70,9 @@ ProblemFile problem_file_of(const ObservedStep& step, const RunOptions& options)
   file.friction_model = options.friction.text;
   file.erp = options.extract.erp;
   file.cfm = options.extract.cfm;
+  file.position = world.positions_m();
   for (int i = 0; i < world.body_count(); ++i) {
     const BodyState state = world.state(i);
-    file.position.insert(file.position.end(), state.position_m.begin(), state.position_m.end());
     file.orientation.insert(file.orientation.end(), state.orientation.begin(), state.orientation.end());
   }
   file.shapes = extract_shapes(world);

@@ -139,7 +139,7 @@ class Replay {
  public:
   // Makes every solver, partitioner and refiner.
   explicit Replay(const ReplayOptions& options)
-      : options_(options), combinations_(make_combinations(options.solve, no_world_, &stop_requested())) {}
+      : options_(options), combinations_(make_combinations(options.solve, context_, &stop_requested())) {}
 
   RunSummary run(const fs::path& out) {
     Stopwatch watch;
@@ -166,6 +166,7 @@ class Replay {
     std::vector<StepRecord> rows(combinations_.size(), columns_of(file, path, options_));
     std::vector<double> recorded = file.problem.warm_impulse;
     if (options_.cold) std::ranges::fill(file.problem.warm_impulse, 0.0);
+    context_.position_m = known_positions(file);
     const std::vector<Outcome> outcomes =
         measure_all(combinations_, file.problem, summary_.measured_steps, rows);
     if (options_.write_solutions) {
@@ -180,7 +181,7 @@ class Replay {
   }
 
   const ReplayOptions& options_;
-  const StepContext no_world_;
+  StepContext context_;  // without a world
   std::vector<Combination> combinations_;
   RunSummary summary_;
 };

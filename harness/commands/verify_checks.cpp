@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <functional>
 #include <numeric>
-#include <optional>
 #include <regex>
 #include <stdexcept>
 
@@ -86,19 +85,23 @@ void check_outside_parts(const StoredPartition& partition, const std::string& co
   list.add(found == fingerprint, subject, "part ids have the fingerprint " + found + " of their file");
 }
 
-void check_split(const StepProblem& problem, const StoredPartition& partition, int step,
-                 const std::string& subject, CheckList& list) {
-  const std::string counted = metrics_text(measure_partition(body_graph_of(problem), partition.part_of_body));
+void check_split(const ProblemFile& file, const StoredPartition& partition, const std::string& subject,
+                 CheckList& list) {
+  const std::string counted =
+      metrics_text(measure_partition(body_graph_of(file.problem), partition.part_of_body));
   if (content_of("partitioner", algorithm_name(partition.partitioner)) != nullptr)
     return check_outside_parts(partition, counted, subject, list);
-  std::optional<Splitter> splitter;
-  try {
-    splitter.emplace(read_split_setup(partition));
-  } catch (const std::invalid_argument& error) {
+  const auto not_again = [&](const std::exception& error) {
     list.add(false, subject, counted + "; cannot be split again: " + error.what());
-    return;
+  };
+  Split again;
+  try {
+    again = Splitter(read_split_setup(partition)).run(file.problem, file.step, known_positions(file));
+  } catch (const std::invalid_argument& error) {
+    return not_again(error);
+  } catch (const CannotSplit& error) {
+    return not_again(error);
   }
-  const Split again = splitter->run(problem, step);
   const std::vector<int>& parts = again.parts.part_of_body;
   const int moved = static_cast<int>(std::inner_product(
       parts.begin(), parts.end(), partition.part_of_body.begin(), 0, std::plus<>(), std::not_equal_to<>()));
@@ -110,12 +113,12 @@ void check_split(const StepProblem& problem, const StoredPartition& partition, i
                              : "the same"));
 }
 
-void check_partition(const std::string& label, const StepProblem& problem, const StoredPartition& partition,
-                     int step, const std::string& subject, CheckList& list) {
+void check_partition(const std::string& label, const ProblemFile& file, const StoredPartition& partition,
+                     const std::string& subject, CheckList& list) {
   const std::string pair = partition.partitioner + "+" + partition.refiner;
   list.add(label == pair || label.starts_with(pair + "+"), subject,
            "label of partitioner and refiner " + pair);
-  if (check_part_ids(partition, subject, list)) check_split(problem, partition, step, subject, list);
+  if (check_part_ids(partition, subject, list)) check_split(file, partition, subject, list);
 }
 
 void check_friction_model(const std::string& model, const std::string& subject, CheckList& list) {
@@ -175,7 +178,7 @@ void check_problem_file(const std::filesystem::path& path, const ProblemFile& fi
     check_solution(problem, solution, subject, list);
   }
   for (const auto& [label, partition] : file.partitions)
-    check_partition(label, problem, partition, file.step, path.string() + " partition/" + label, list);
+    check_partition(label, file, partition, path.string() + " partition/" + label, list);
 }
 
 }  // namespace cleave

@@ -74,15 +74,12 @@ std::span<const Keywords> keywords() {
   return table;
 }
 
-// Parameters without a default that nobody gave. A file is that of one algorithm and given for no other.
-std::vector<std::string> missing_parameters(const std::string& option, const std::string& name,
-                                            const CommonValues& common) {
-  std::vector<std::string> missing;
-  for (const Parameter& parameter : parameters_of(option, name))
-    if (parameter.default_value.empty() &&
-        (parameter.kind == Parameter::Kind::path || !common.contains(parameter.name)))
-      missing.push_back(parameter.name);
-  return missing;
+const AlgorithmEntry* find_entry(const std::string& option, const std::string& name) {
+  for (const AlgorithmKind& kind : algorithm_kinds())
+    if (kind.option == option)
+      for (const AlgorithmEntry& entry : kind.entries)
+        if (entry.name == name) return &entry;
+  return nullptr;
 }
 
 // The items of a list with keywords replaced by what they stand for.
@@ -96,11 +93,11 @@ std::vector<std::string> expanded(const std::string& option, const std::string& 
       std::ranges::copy(row->paper, std::back_inserter(items));
     } else if (row != keywords().end() && item == "all") {
       for (const std::string& name : names_for(option)) {
-        const std::vector<std::string> missing = missing_parameters(option, name, common);
-        if (missing.empty()) {
+        const std::string reason = reason_to_leave_out(*find_entry(option, name), common);
+        if (reason.empty()) {
           items.push_back(name);
         } else if (left_out != nullptr) {
-          left_out->push_back("--" + option + " all leaves out " + name + ", which needs " + joined(missing));
+          left_out->push_back("--" + option + " all leaves out " + name + ", which " + reason);
         }
       }
     } else {
@@ -173,11 +170,8 @@ std::vector<Parameter> parameters_of(const std::string& option, const std::strin
 }
 
 ContentReader content_of(const std::string& option, const std::string& name) {
-  for (const AlgorithmKind& kind : algorithm_kinds())
-    if (kind.option == option)
-      for (const AlgorithmEntry& entry : kind.entries)
-        if (entry.name == name) return entry.content;
-  return nullptr;
+  const AlgorithmEntry* entry = find_entry(option, name);
+  return entry == nullptr ? nullptr : entry->content;
 }
 
 void check_algorithm(const std::string& option, const std::string& text) {
@@ -186,6 +180,8 @@ void check_algorithm(const std::string& option, const std::string& text) {
 
 Algorithm read_named(const std::string& option, const std::string& text, const CommonValues& common) {
   check_algorithm(option, text);
+  if (const AlgorithmEntry* entry = find_entry(option, algorithm_name(text)))
+    check_available("--" + option, *entry);
   const std::vector<Parameter> parameters = parameters_of(option, algorithm_name(text));
   Algorithm algorithm = read_algorithm("--" + option, text, parameters, common, owners_of);
   if (const ContentReader content = content_of(option, algorithm.name))

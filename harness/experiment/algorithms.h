@@ -42,7 +42,8 @@ void check_algorithm(const std::string& option, const std::string& text);
 Algorithm read_named(const std::string& option, const std::string& text, const CommonValues& common = {});
 
 // Reads a list: items as above, none twice, and where the kind has them the keywords
-//     all     every algorithm that needs no more than is given; what is left out goes to `left_out`, in words
+//     all     every algorithm of this build that needs no more than is given; what is left out goes to `left_out`, in
+//             words. Options leave out partitioners too that the run's solvers cannot use
 //     paper   those of Liu & Andrews 2022
 std::vector<Algorithm> read_list(const std::string& option, const std::string& text,
                                  const CommonValues& common, std::vector<std::string>* left_out = nullptr);

@@ -10,7 +10,9 @@
 #include "harness/base/names.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/memory_limit.h"
+#include "harness/experiment/splitter.h"
 #include "harness/world/ode_baselines.h"
+#include "partition/registry.h"
 #include "solver/registry.h"
 
 namespace cleave {
@@ -140,6 +142,32 @@ void override_solvers(const Given& given, RunOptions& options) {
   options.solvers = read_list("solver", joined(changed, ","), options.common);
 }
 
+// Why the run cannot have its bodies split by it; empty: it can.
+std::string why_unable(const Algorithm& partitioner, const RunOptions& options) {
+  if (options.skip_small_islands && !partitioner.settings.has("max-bodies"))
+    return "which has no max-bodies, as --skip-small-islands needs";
+  const bool keeps_to_bound = make_partitioner(partitioner)->promised().at_most_max_bodies;
+  for (const Algorithm& solver : options.solvers)
+    if (arity_of(solver) && !keeps_to_bound)
+      return "which keeps to no max-bodies, as " + solver.text + " needs";
+  return {};
+}
+
+// What `all` stands for can do what is asked of it; what is named beside it is refused elsewhere if it cannot.
+void leave_out_unable(const Given& given, RunOptions& options) {
+  const auto found = given.find("partitioner");
+  if (found == given.end()) return;
+  const std::vector<std::string> items = split_list(found->second);
+  if (std::ranges::count(items, "all") == 0) return;
+  std::erase_if(options.partitioners, [&](const Algorithm& partitioner) {
+    if (std::ranges::count(items, partitioner.text) > 0) return false;
+    const std::string why = why_unable(partitioner, options);
+    if (!why.empty())
+      options.left_out.push_back("--partitioner all leaves out " + partitioner.text + ", " + why);
+    return !why.empty();
+  });
+}
+
 OptionKind option_kind(const Parameter& parameter) {
   switch (parameter.kind) {
     case Parameter::Kind::integer:
@@ -189,6 +217,7 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given,
   check_scene_options(scene_row(options.scene), scene_given(options.common));
   read_stiffness(given, options);
   override_solvers(given, options);
+  leave_out_unable(given, options);
   read_session(given, options);
   read_friction(options);
   check_owned(options, stored, true);
@@ -211,6 +240,7 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
   RunOptions options = options_with(read_common(given));
   read_table(given, options);
   override_solvers(given, options);
+  leave_out_unable(given, options);
   read_session(given, options);
   check_owned(options, stored, false);
   for (const AlgorithmEntry& ode : ode_baselines())

@@ -4,7 +4,8 @@
 
 namespace cleave {
 
-BodyGraph body_graph_of(const StepProblem& problem, std::optional<int> step) {
+BodyGraph body_graph_of(const StepProblem& problem, std::optional<int> step,
+                        std::span<const double> position_m) {
   std::vector<double> mass_kg(problem.body_count());
   for (int i = 0; i < problem.body_count(); ++i) mass_kg[i] = problem.mass[36 * i];
 
@@ -14,7 +15,7 @@ BodyGraph body_graph_of(const StepProblem& problem, std::optional<int> step) {
       links.push_back({problem.row_body[2 * r], problem.row_body[2 * r + 1], 0});
     ++links.back().rows;
   }
-  return BodyGraph(mass_kg, links, step);
+  return BodyGraph(mass_kg, links, step, position_m);
 }
 
 }  // namespace cleave

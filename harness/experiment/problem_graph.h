@@ -1,8 +1,9 @@
-// The body graph of a step problem, from its arrays alone, so that it is the same for a live and for a
-// replayed step.
+// The body graph of a step problem, from its arrays alone and the positions that its file holds too, so that it
+// is the same for a live and for a replayed step.
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "partition/body_graph.h"
 #include "solver/step_problem.h"
@@ -11,7 +12,8 @@ namespace cleave {
 
 // One link per constraint (a joint or one contact point: adjacent rows of equal row_constraint), with its
 // number of rows. A body's mass is the first diagonal entry of its mass block. step: which one of its run the
-// problem is.
-BodyGraph body_graph_of(const StepProblem& problem, std::optional<int> step = std::nullopt);
+// problem is. position_m: (n, 3) centres of the bodies, or empty.
+BodyGraph body_graph_of(const StepProblem& problem, std::optional<int> step = std::nullopt,
+                        std::span<const double> position_m = {});
 
 }  // namespace cleave

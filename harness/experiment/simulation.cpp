@@ -23,6 +23,13 @@ bool is_finite(const OdeWorld& world) {
   return std::isfinite(world.potential_energy_j()) && std::isfinite(world.kinetic_energy_j());
 }
 
+// None where one has overflown, in a coordinate that no energy tells of.
+std::vector<double> known_positions(const OdeWorld& world) {
+  std::vector<double> positions_m = world.positions_m();
+  const bool are_finite = std::ranges::all_of(positions_m, [](double x) { return std::isfinite(x); });
+  return are_finite ? positions_m : std::vector<double>();
+}
+
 std::string why_stopped(int step, const Outcome& advance) {
   const std::string stopped = "the world stopped at step " + std::to_string(step) + ": ";
   if (advance.can_advance()) return stopped + "positions are no numbers";
@@ -53,7 +60,7 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
     common.t_extract_ms = watch.lap_ms();
 
     // Converged bounds are found by solving, with ODE's own solvers too.
-    context_ = {&world, contacts, options_.extract.erp, options_.extract.cfm};
+    context_ = {&world, contacts, options_.extract.erp, options_.extract.cfm, known_positions(world)};
     watch.lap_ms();
     predict_bounds(problem, advancing, step);
     common.t_predict_ms = watch.lap_ms();

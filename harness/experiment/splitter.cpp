@@ -73,10 +73,11 @@ void Splitter::run_recursion(Split& split) const {
   split.before = nest(split.graph, false, untimed_ms).leaves;
 }
 
-Split Splitter::run(const StepProblem& problem, std::optional<int> step) const {
+Split Splitter::run(const StepProblem& problem, std::optional<int> step,
+                    std::span<const double> position_m) const {
   Split split;
   Stopwatch watch;
-  split.graph = body_graph_of(problem, step);
+  split.graph = body_graph_of(problem, step, position_m);
   split.graph_ms = watch.lap_ms();
   if (set_splitter_) {
     run_recursion(split);

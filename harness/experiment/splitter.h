@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "harness/base/algorithm.h"
@@ -41,8 +42,10 @@ class Splitter {
   // SetSplitter.
   explicit Splitter(const SplitSetup& setup);
 
-  // step: which one of its run the problem is. Throws CannotSplit where the partitioner does.
-  Split run(const StepProblem& problem, std::optional<int> step = std::nullopt) const;
+  // step: which one of its run the problem is. position_m: (n, 3) centres of the bodies, or empty. Throws
+  // CannotSplit where the partitioner does.
+  Split run(const StepProblem& problem, std::optional<int> step = std::nullopt,
+            std::span<const double> position_m = {}) const;
 
  private:
   void run_once(Split& split) const;

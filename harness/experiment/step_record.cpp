@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <set>
+#include <string_view>
 
 #include "harness/base/numbers.h"
 #include "harness/experiment/algorithms.h"
@@ -29,17 +31,32 @@ std::string cell_text(ColumnOf, const std::string& value) { return quoted_where_
 std::string cell_text(ColumnOf, int value) { return std::to_string(value); }
 std::string cell_text(ColumnOf, std::uint64_t value) { return std::to_string(value); }
 
+// In the order in which they came.
+constexpr std::string_view kLate[] = {"partition_seed",  "trials", "karger_method", "ufactor",
+                                      "scotch_strategy", "effort", "patience"};
+
+// 0 for all that are not late.
+std::ptrdiff_t late_rank(const std::string& column) {
+  const auto found = std::ranges::find(kLate, column);
+  return found == std::end(kLate) ? 0 : 1 + (found - std::begin(kLate));
+}
+
+ParameterColumn::Place place_of(const std::string& column) {
+  static const std::set<std::string> first = {"max_bodies", "tau_mr", "tau_mix", "max_growth"};
+  if (first.contains(column)) return ParameterColumn::Place::first;
+  return late_rank(column) > 0 ? ParameterColumn::Place::last : ParameterColumn::Place::among_options;
+}
+
 }  // namespace
 
 std::span<const ParameterColumn> parameter_columns() {
   static const std::vector<ParameterColumn> columns = [] {
-    const std::set<std::string> early = {"max_bodies", "tau_mr", "tau_mix", "max_growth"};
     std::vector<ParameterColumn> all;
     for (const CommonParameter& common : common_parameters()) {
       const std::string name = column_of(common.parameter.name);
-      all.push_back(
-          {name, common.parameter.help + "; - where nothing has it", common.about, early.contains(name)});
+      all.push_back({name, common.parameter.help + "; - where nothing has it", common.about, place_of(name)});
     }
+    std::ranges::stable_sort(all, {}, [](const ParameterColumn& column) { return late_rank(column.name); });
     return all;
   }();
   return columns;
@@ -84,6 +101,7 @@ void StepRecord::set_summary(const SolveSummary& summary) {
   interface_unknowns = summary.interface_unknowns;
   factor_mflop_local = summary.factor_mflop_local;
   factor_mflop_interface = summary.factor_mflop_interface;
+  factor_mflop_done = summary.factor_mflop_done;
   t_s_ms = summary.times.total_ms;
   t_s_stage_ms = summary.times.stage_ms;
   t_s_other_ms = summary.times.total_ms;

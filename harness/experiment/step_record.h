@@ -34,11 +34,14 @@ namespace cleave {
 // the end.
 inline constexpr const char* kStepsSchema = "cleave-steps-4";
 
-// A column of a parameter of algorithms (algorithms.h).
+// A column of a parameter of algorithms (algorithms.h). Those of the first tables stand first; some came when
+// there were others behind them, and stand last.
 struct ParameterColumn {
+  enum class Place { first, among_options, last };
+
   std::string name, help;
   About about;
-  bool early;  // stands where it stood in the first tables
+  Place place;
 };
 std::span<const ParameterColumn> parameter_columns();
 
@@ -74,6 +77,7 @@ struct StepRecord {
   // The solve.
   int interface_unknowns = -1;
   double factor_mflop_local = kUnmeasured, factor_mflop_interface = kUnmeasured;
+  double factor_mflop_done = kUnmeasured;
   double t_collide_ms = kUnmeasured, t_extract_ms = kUnmeasured, t_predict_ms = kUnmeasured,
          t_graph_ms = kUnmeasured;
   double t_partition_ms = kUnmeasured, t_refine_ms = kUnmeasured, t_pr_ms = kUnmeasured;
@@ -167,8 +171,12 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         "and within "
         "the judge's limit",
         About::bookkeeping);
-  for (const ParameterColumn& column : parameter_columns())
-    if (column.early) visit(column.name, r.parameter(column.name), column.help.c_str(), column.about);
+  const auto visit_parameters = [&](ParameterColumn::Place place) {
+    for (const ParameterColumn& column : parameter_columns())
+      if (column.place == place)
+        visit(column.name, r.parameter(column.name), column.help.c_str(), column.about);
+  };
+  visit_parameters(ParameterColumn::Place::first);
   visit("bodies", r.bodies, "dynamic bodies");
   visit("contacts", r.contacts, "contact points");
   visit("contact_cap_hits", r.contact_cap_hits, "geom pairs that reached the contact cap");
@@ -265,8 +273,7 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
       "how far a contact may move and still be that of the last step, in least extents of the smaller shape",
       About::problem);
   visit("contact_cap", r.contact_cap, "most contact points of a geom pair", About::problem);
-  for (const ParameterColumn& column : parameter_columns())
-    if (!column.early) visit(column.name, r.parameter(column.name), column.help.c_str(), column.about);
+  visit_parameters(ParameterColumn::Place::among_options);
   visit("skip_small_islands", r.skip_small_islands, "1 where small islands are one part each, else 0",
         About::partition);
   visit("cold", r.cold, "1 where solves start from zero impulses, 0 where from those of the last step",
@@ -285,6 +292,9 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         About::solver);
   visit("factor_reuses", r.factor_reuses, "systems solved with the factor of another, in a session");
   visit("cg_iterations", r.cg_iterations, "iterations of conjugate gradients with such a factor");
+  visit("factor_mflop_done", r.factor_mflop_done,
+        "Mflop of all factorisations of the solve, less what was kept of the one before");
+  visit_parameters(ParameterColumn::Place::last);
 }
 
 // "run_id,scene,...\n"

@@ -10,9 +10,15 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <cstdint>
+#include <cstdio>
 #include <ctime>
 #include <fstream>
 #include <limits>
+
+#ifdef CLEAVE_SCOTCH
+#include <scotch.h>  // needs cstdint and cstdio
+#endif
 
 #include "harness/files/dense_speed.h"
 #include "harness/files/hdf5_types.h"
@@ -89,7 +95,7 @@ std::vector<std::pair<std::string, std::string>> library_versions() {
   unsigned hdf5[3];
   silence_hdf5();
   H5get_libversion(&hdf5[0], &hdf5[1], &hdf5[2]);
-  return {
+  std::vector<std::pair<std::string, std::string>> versions = {
       {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"suitesparse", dotted(SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION, SUITESPARSE_SUBSUB_VERSION)},
       {"camd", dotted(CAMD_MAIN_VERSION, CAMD_SUB_VERSION, CAMD_SUBSUB_VERSION)},
@@ -97,6 +103,10 @@ std::vector<std::pair<std::string, std::string>> library_versions() {
       {"hdf5", dotted(static_cast<int>(hdf5[0]), static_cast<int>(hdf5[1]), static_cast<int>(hdf5[2]))},
       {"openmp", std::to_string(_OPENMP)},
       {"cli11", CLI11_VERSION}};
+#ifdef CLEAVE_SCOTCH
+  versions.emplace_back("scotch", dotted(SCOTCH_VERSION, SCOTCH_RELEASE, SCOTCH_PATCHLEVEL));
+#endif
+  return versions;
 }
 
 std::array<double, 3> load_average() {

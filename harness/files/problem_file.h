@@ -75,6 +75,10 @@ ProblemFile read_problem_file_aloud(const std::filesystem::path& path);
 // written.
 void write_problem_file(const std::filesystem::path& path, const ProblemFile& file);
 
+// (n, 3) m, or empty where the file does not say where the bodies are: all positions are 0, which is what it means
+// to leave them out.
+std::vector<double> known_positions(const ProblemFile& file);
+
 // "rock_pile_step000100.h5": what `record` calls the problem of a step.
 std::string problem_file_name(const std::string& scene, int step);
 

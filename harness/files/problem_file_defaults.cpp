@@ -1,5 +1,6 @@
 #include "harness/files/problem_file_defaults.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace cleave {
@@ -58,6 +59,12 @@ void fill_left_out(ProblemFile& file) {
   fill(file.position, 3 * n, 0.0);
   if (file.orientation.empty())
     for (std::size_t i = 0; i < n; ++i) file.orientation.insert(file.orientation.end(), {1.0, 0.0, 0.0, 0.0});
+}
+
+std::vector<double> known_positions(const ProblemFile& file) {
+  const bool are_known =
+      std::ranges::any_of(file.position, [](double coordinate) { return coordinate != 0; });
+  return are_known ? file.position : std::vector<double>();
 }
 
 }  // namespace cleave

@@ -147,7 +147,8 @@ class OdeSolver : public StepSolver {
     summary.strategy = options_.quick ? "ode-quickstep" : "ode-step";
     summary.kernel = "-";
     summary.iterations = summary.factorizations = -1;  // ODE does not say
-    summary.factor_mflop_local = summary.factor_mflop_interface = std::numeric_limits<double>::quiet_NaN();
+    summary.factor_mflop_local = summary.factor_mflop_interface = summary.factor_mflop_done =
+        std::numeric_limits<double>::quiet_NaN();
     if (context_.world == nullptr) {
       summary.status = SolveStatus::refused;
       summary.message = "no world to rebuild: a problem alone does not hold one";

@@ -225,6 +225,15 @@ BodyState OdeWorld::state(int body) const {
   return {{x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}, {v[0], v[1], v[2], w[0], w[1], w[2]}};
 }
 
+std::vector<double> OdeWorld::positions_m() const {
+  std::vector<double> positions_m;
+  for (int body = 0; body < body_count(); ++body) {
+    const std::array<double, 3> position_m = state(body).position_m;
+    positions_m.insert(positions_m.end(), position_m.begin(), position_m.end());
+  }
+  return positions_m;
+}
+
 void OdeWorld::set_state(int body, const BodyState& state) {
   const dBodyID b = content_.bodies[body];
   const auto& v = state.velocity;

@@ -73,6 +73,7 @@ class OdeWorld {
   void advance(std::span<const double> velocity, double h_s);
 
   BodyState state(int body) const;
+  std::vector<double> positions_m() const;           // (n, 3) of all bodies
   void set_state(int body, const BodyState& state);  // normalises the orientation
   std::uint64_t state_hash() const;  // FNV-1a-64 over position, orientation, velocity of all bodies by index
 

@@ -1,8 +1,9 @@
-// What a step is made of besides its problem: read by solvers that are ODE itself and by whoever writes a
-// step down. One object a simulation, set anew on every step before anyone solves.
+// What a step is made of besides its problem: read by solvers that are ODE itself, by partitioners that go by
+// positions and by whoever writes a step down. One object a simulation, set anew on every step before anyone solves.
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "harness/world/ode_world.h"
 
@@ -11,7 +12,8 @@ namespace cleave {
 struct StepContext {
   const OdeWorld* world = nullptr;  // null where a recorded problem is solved
   std::span<const ContactPoint> contacts;
-  double erp = 0, cfm = 0;  // of the run
+  double erp = 0, cfm = 0;              // of the run
+  std::vector<double> position_m = {};  // (n, 3) centres of the bodies; empty where nobody knows them
 };
 
 }  // namespace cleave

@@ -1,11 +1,13 @@
 #include "solver/kernels/branch_kernel.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace cleave {
 
 void BranchKernel::bind(const PreparedStep& step) {
   step_ = &step;
+  changed_all_ = true;
   system_.bind(step, matrix_.cholesky().symbolic().position_of_node());
   x_.resize(6 * static_cast<std::size_t>(step.body_count()));
 }
@@ -36,7 +38,7 @@ void BranchKernel::request_memory(const PreparedStep& step, ParallelTasks& tasks
   separators_.count(memory);
   for (const TaskGraph* graph : {&assembly_graph_, &forward_graph_, &backward_graph_}) graph->count(memory);
   for (const FactorTasks* factor : {&local_tasks_, &interface_tasks_}) factor->count(memory);
-  memory.add_grown(stages_.of_body, waits_, places_, factored_);
+  memory.add_grown(stages_.of_body, waits_, places_, changed_, factored_);
   memory.add<double>(12, step.groups().size());
   memory.add<double>(6, step.body_count());
   if (!step.set().axes().empty()) memory.add<double>(12, step.row_count());
@@ -57,6 +59,7 @@ void BranchKernel::list_tasks() {
   const BlockSymbolic& symbolic = matrix_.cholesky().symbolic();
   const auto branches = symbolic.branches();
   const int count = static_cast<int>(branches.size());
+  changed_.resize(count);
   factored_.resize(count);
   std::vector<int> local, interface;
   for (int b = 0; b < count; ++b)
@@ -79,16 +82,34 @@ void BranchKernel::list_tasks() {
   backward_graph_.build(count, waits_, places_);
 }
 
+// Rows in blocks are turned by their bases too, so that equal weights do not say that nothing has changed.
+void BranchKernel::find_changed(const RowWeights& weights, ParallelTasks& tasks) {
+  const long preparation = step_->preparations();
+  const bool is_new = std::exchange(factored_preparation_, preparation) != preparation;
+  const bool all = std::exchange(changed_all_, true) || is_new;  // true until this factorisation has succeeded
+  std::ranges::fill(changed_, all);
+  tasks.run_over(step_->group_chunks(),
+                 [&](const Chunk& groups) { matrix_.take_weights(weights.d, groups, changed_); });
+  const auto branches = matrix_.cholesky().symbolic().branches();
+  for (std::size_t b = 0; b < branches.size(); ++b)
+    if (changed_[b] && branches[b].parent >= 0) changed_[branches[b].parent] = 1;
+}
+
 bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
   {
     StageTimer timer(tasks.clock(), Stage::assemble);
     system_.set(weights);
+    find_changed(weights, tasks);
   }
-  tasks.run(Stage::assemble, assembly_graph_, [&](int b) { matrix_.assemble(system_.rows(), b); });
+  tasks.run(Stage::assemble, assembly_graph_, [&](int b) {
+    if (changed_[b]) matrix_.assemble(system_.rows(), b);
+  });
   std::ranges::fill(factored_, 1);
-  local_tasks_.run(Stage::factor_local, matrix_, factored_, tasks);
-  interface_tasks_.run(Stage::factor_interface, matrix_, factored_, tasks);
-  return std::ranges::find(factored_, 0) == factored_.end();
+  local_tasks_.run(Stage::factor_local, matrix_, changed_, factored_, tasks);
+  interface_tasks_.run(Stage::factor_interface, matrix_, changed_, factored_, tasks);
+  const bool succeeded = std::ranges::find(factored_, 0) == factored_.end();
+  changed_all_ = !succeeded || !weights.blocks.empty();
+  return succeeded;
 }
 
 void BranchKernel::substitute(ParallelTasks& tasks) {
@@ -102,14 +123,12 @@ void BranchKernel::solve(std::span<const double> f_v, std::span<const double> f_
                          std::span<double> dlambda, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::solve);
   const auto groups = step_->group_chunks(), bodies = step_->body_chunks();
-  const int group_tasks = static_cast<int>(groups.size()), body_tasks = static_cast<int>(bodies.size());
   tasks.run_over(groups, [&](const Chunk& chunk) { system_.weigh(chunk, f_r); });
   tasks.run_over(bodies, [&](const Chunk& chunk) { system_.collect(chunk, f_v, x_); });
   substitute(tasks);
-  tasks.run(group_tasks + body_tasks, [&](int i) {
-    if (i < group_tasks) return system_.expand(groups[i], x_, f_r, dlambda);
-    system_.to_bodies(bodies[i - group_tasks], x_, dv);
-  });
+  tasks.run_over(
+      groups, [&](const Chunk& chunk) { system_.expand(chunk, x_, f_r, dlambda); }, bodies,
+      [&](const Chunk& chunk) { system_.to_bodies(chunk, x_, dv); });
 }
 
 void BranchKernel::apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) {
@@ -130,6 +149,13 @@ double BranchKernel::interface_mflop() const {
   double flops = 0;
   for (int s = stages_.first_of_interface; s < stages_.count; ++s)
     flops += matrix_.cholesky().symbolic().factor_flops(s);
+  return flops * 1e-6;
+}
+
+double BranchKernel::done_mflop() const {
+  const auto branches = matrix_.cholesky().symbolic().branches();
+  double flops = 0;
+  for (std::size_t b = 0; b < branches.size(); ++b) flops += changed_[b] ? branches[b].flops : 0;
   return flops * 1e-6;
 }
 

@@ -6,6 +6,9 @@
 // dealt out in branches of its elimination tree (block_symbolic.h). Assembly has no order; a branch is factored after its
 // child branches, in tiles where it is large (factor_tasks.h), and so goes forward substitution; back substitution goes
 // from the root. A kernel only says in what order bodies are eliminated.
+//
+// Strategies that end near the solution change few weights from one factorisation to the next. Only branches with a changed
+// row, and those above them, are made anew; the others stand as they are, and the factor has the bytes of a whole one.
 #pragma once
 
 #include <span>
@@ -31,6 +34,7 @@ class BranchKernel : public Kernel {
   int interface_unknowns() const override { return 6 * interface_bodies_; }
   double local_mflop() const override;
   double interface_mflop() const override;
+  double done_mflop() const override;
   bool can_be_carried() const override { return true; }
   void apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) override;
   double apply_mflop() const override;
@@ -49,6 +53,7 @@ class BranchKernel : public Kernel {
  private:
   void bind(const PreparedStep& step);
   void list_tasks();
+  void find_changed(const RowWeights& weights, ParallelTasks& tasks);
   void request_memory(const PreparedStep& step, ParallelTasks& tasks, bool analyzed);
   void substitute(ParallelTasks& tasks);
 
@@ -62,8 +67,11 @@ class BranchKernel : public Kernel {
   TaskGraph assembly_graph_, forward_graph_, backward_graph_;
   std::vector<std::pair<int, int>> waits_;  // scratch
   std::vector<double> places_;              // scratch
-  std::vector<char> factored_;
-  std::vector<double> x_;  // (n, 6) by position
+  // The last factorisation failed, is not one of this analysis, or had rows turned by blocks.
+  bool changed_all_ = true;
+  long factored_preparation_ = 0;         // of the step
+  std::vector<char> changed_, factored_;  // by branch
+  std::vector<double> x_;                 // (n, 6) by position
 };
 
 }  // namespace cleave

@@ -44,9 +44,11 @@ class Kernel {
                      std::span<double> dlambda, ParallelTasks& tasks) = 0;
 
   virtual int interface_unknowns() const { return 0; }
-  // Arithmetic of the last factorisation, without padding, in Mflop.
+  // Arithmetic of a factorisation, without padding, in Mflop.
   virtual double local_mflop() const = 0;
   virtual double interface_mflop() const { return 0; }
+  // Of the last one, which may have kept what had not changed.
+  virtual double done_mflop() const { return local_mflop() + interface_mflop(); }
 
   // Whether its factor is one of H alone, without rows, so that it can serve a later step (carried_factor.h). Only
   // then is there:

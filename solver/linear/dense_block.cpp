@@ -1,8 +1,23 @@
 #include "solver/linear/dense_block.h"
 
+#include <algorithm>
 #include <cmath>
 
+#include "solver/linear/small_cholesky.h"
+
 namespace cleave {
+
+bool eliminate_columns(int rows, int columns, double* a, int lda) {
+  for (int k = 0; k < columns; ++k) {
+    double* diagonal = a + 6 * k + 6L * k * lda;
+    subtract_product(6 * (rows - k), 6 * k, a + 6 * k, lda, a + 6 * k, lda, diagonal, lda);
+    double inverse[36];
+    if (!invert_cholesky<6>(diagonal, lda, inverse, 6)) return false;
+    multiply_by_transpose(6 * (rows - k - 1), inverse, 6, diagonal + 6, lda);
+    for (int c = 0; c < 6; ++c) std::copy(inverse + 6 * c, inverse + 6 * c + 6, diagonal + c * lda);
+  }
+  return true;
+}
 
 void subtract_matrix_vector(int rows, int columns, const double* a, int lda, const double* x, double* y) {
   for (int c = 0; c < columns; c += 2, a += 2 * lda) {

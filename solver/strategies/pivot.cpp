@@ -88,21 +88,24 @@ class Pivot : public Strategy {
   }
 
   // The kernel's analysis is done beside the first sweeps. On one thread it still counts as what it is.
-  void run_predictor(SolveState& state, int sweeps) {
+  int run_predictor(SolveState& state, int sweeps) {
     const bool analyzes = static_cast<bool>(state.analysis);
-    predictor_.run(sweeps, state.impulse, state.velocity, state.tasks, [&state] { state.analyze(); });
+    const int changed = predictor_.run(sweeps, state.tasks, [&state] { state.analyze(); });
     if (analyzes && state.tasks.threads() == 1)
       state.tasks.clock().move(Stage::predict, Stage::analyze, state.analysis_ms);
+    return changed;
   }
 
   void sweep(SolveState& state, int sweeps) {
+    if (sweeps == 0) return;
     StageTimer timer(state.tasks.clock(), Stage::predict);
+    predictor_.take_in(state.impulse, state.velocity, state.tasks);
     for (int done = 0; done < sweeps; done += SlabSweeps::kMostSweeps) {
-      last_state_ = state.state;
-      run_predictor(state, std::min(SlabSweeps::kMostSweeps, sweeps - done));
-      state.states_from_impulses();
-      if (is_settled(count_changes(last_state_, state.state), last_state_.size())) break;
+      const int changed = run_predictor(state, std::min(SlabSweeps::kMostSweeps, sweeps - done));
+      if (is_settled(changed, state.impulse.size())) break;
     }
+    predictor_.give_out(state.impulse, state.velocity, state.tasks);
+    state.states_from_impulses();
   }
 
   bool finish(SolveState& state, double tolerance) {
@@ -113,7 +116,7 @@ class Pivot : public Strategy {
   }
 
   SlabSweeps predictor_;
-  std::vector<RowState> last_state_, warm_state_;
+  std::vector<RowState> warm_state_;
 };
 
 }  // namespace

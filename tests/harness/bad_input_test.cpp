@@ -7,6 +7,7 @@
 
 #include "harness/base/names.h"
 #include "harness/experiment/problem_graph.h"
+#include "partition/registry.h"
 #include "scenarios/scene.h"
 #include "tests/harness/problem_file_sample.h"
 #include "tests/harness/run_program.h"
@@ -85,6 +86,9 @@ TEST(BadInputOfRecord, IsRefusedBeforeAnythingIsCreated) {
   }
 }
 
+// All partitioners but `file`, each with all refiners.
+std::size_t pairs_with_defaults() { return (partitioners().size() - 1) * refiners().size(); }
+
 class Replays : public testing::Test {
  protected:
   // Writes the problem into a directory of its own and replays it into directory_/out.
@@ -107,7 +111,7 @@ class Replays : public testing::Test {
                          "--max-bodies", max_bodies, "--repeats", "1", "--force"});
     EXPECT_EQ(result.exit_code, 0) << result.err;
     const CsvTable table = read_csv(directory_ / "out/steps.csv");
-    EXPECT_EQ(table.rows.size(), 15u * 3 + 3);
+    EXPECT_EQ(table.rows.size(), pairs_with_defaults() * 3 + 3);
     for (const std::string& status : table.column("status")) EXPECT_EQ(status, "ok");
     for (const std::string& residual : table.column("residual_m_per_s")) EXPECT_LE(std::stod(residual), 1e-9);
     return table;

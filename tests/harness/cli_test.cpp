@@ -268,7 +268,9 @@ TEST(Options, EveryGivenValueArrives) {
   EXPECT_EQ(options.seed, 18446744073709551615u);
   EXPECT_EQ(options.scene.settings.text("bodies"), "12");
   EXPECT_EQ(options.scene.settings.text("rock-shape"), "box");  // completed with the scene's default
-  const Settings& fm = options.refiners.back().settings;
+  const auto found = std::ranges::find(options.refiners, std::string("fm"), &Algorithm::name);
+  ASSERT_NE(found, options.refiners.end());
+  const Settings& fm = found->settings;
   EXPECT_EQ(fm.number("max-growth"), 0.5);
   EXPECT_EQ(fm.text("edge-weight"), "pairs");
   EXPECT_TRUE(fm.flag("as-printed"));

@@ -44,6 +44,7 @@ const std::vector<RecordedScene> kScenes = {
 struct Recorded {
   std::string name;
   StepProblem problem;
+  std::vector<double> position_m;
 };
 
 class RecordedSteps : public testing::Test {
@@ -55,11 +56,12 @@ class RecordedSteps : public testing::Test {
       arguments.insert(arguments.end(), scene.options.begin(), scene.options.end());
       const ProgramResult result = run_cleave(arguments);
       ASSERT_EQ(result.exit_code, 0) << scene.name << ": " << result.err;
-      std::map<std::string, StepProblem> by_name;
+      std::map<std::string, ProblemFile> by_name;
       for (const auto& entry : std::filesystem::directory_iterator(*directory_ / scene.name))
         if (entry.path().extension() == ".h5")
-          by_name[scene.name + "/" + entry.path().stem().string()] = read_problem_file(entry.path()).problem;
-      for (auto& [name, problem] : by_name) recorded_.push_back({name, std::move(problem)});
+          by_name[scene.name + "/" + entry.path().stem().string()] = read_problem_file(entry.path());
+      for (auto& [name, file] : by_name)
+        recorded_.push_back({name, std::move(file.problem), std::move(file.position)});
     }
   }
   static void TearDownTestSuite() {
@@ -79,15 +81,15 @@ struct NamedParts {
 };
 
 // Every partitioner with every one of the refiners, and every body for itself.
-std::vector<NamedParts> partitions_of(const StepProblem& problem, int max_bodies,
-                                      const std::vector<std::string>& refiners) {
+std::vector<NamedParts> partitions_of(const StepProblem& problem, const std::vector<double>& position_m,
+                                      int max_bodies, const std::vector<std::string>& refiners) {
   const CommonValues common = {{"max-bodies", std::to_string(max_bodies)}};
   std::vector<NamedParts> all;
   for (const Algorithm& partitioner : read_list("partitioner", "all", common))
     for (const std::string& refiner : refiners)
-      all.push_back(
-          {partitioner.name + "+" + refiner,
-           Splitter({partitioner, read_named("refiner", refiner)}).run(problem).parts.part_of_body});
+      all.push_back({partitioner.name + "+" + refiner, Splitter({partitioner, read_named("refiner", refiner)})
+                                                           .run(problem, {}, position_m)
+                                                           .parts.part_of_body});
   std::vector<int> own(problem.body_count());
   for (std::size_t body = 0; body < own.size(); ++body) own[body] = static_cast<int>(body);
   all.push_back({"own", own});
@@ -139,7 +141,7 @@ void expect_solution(const StepProblem& problem, StepSolver& solver, const std::
 TEST_F(RecordedSteps, AreProblemsWorthSolving) {
   ASSERT_EQ(recorded_.size(), 12u);
   int several_islands = 0;
-  for (const auto& [name, problem] : recorded_) {
+  for (const auto& [name, problem, _] : recorded_) {
     EXPECT_GE(std::ranges::count(problem.row_kind, RowKind::normal), 8) << name;
     EXPECT_GE(std::ranges::count(problem.row_kind, RowKind::friction), 16) << name;
     several_islands += count_islands(body_graph_of(problem)) > 1;
@@ -148,12 +150,12 @@ TEST_F(RecordedSteps, AreProblemsWorthSolving) {
 }
 
 TEST_F(RecordedSteps, EverySolverOnEveryPartitionFindsTheSameVelocities) {
-  for (const auto& [name, problem] : recorded_) {
+  for (const auto& [name, problem, position_m] : recorded_) {
     Solution reference = start_from(problem, false);
     make_step_solver("dense", {})->solve(problem, std::vector<int>(problem.body_count(), 0), reference);
     const ResidualReport report = judge(problem, reference.impulse);
     ASSERT_TRUE(report.exact) << name;
-    const std::vector<NamedParts> partitions = partitions_of(problem, 5, {"none", "fm"});
+    const std::vector<NamedParts> partitions = partitions_of(problem, position_m, 5, {"none", "fm"});
     for (const std::string& solver_name : solvers_that_never_miss()) {
       const auto solver = make_step_solver(solver_name, {});
       for (const auto& [parts_name, part_of_body] : partitions) {
@@ -169,9 +171,9 @@ TEST_F(RecordedSteps, EverySolverOnEveryPartitionFindsTheSameVelocities) {
 // solved, the stiff one is not.
 TEST_F(RecordedSteps, AlternationIsExactOrSaysThatItIsNot) {
   std::map<std::string, int> solved, missed;  // by scene
-  for (const auto& [name, problem] : recorded_) {
+  for (const auto& [name, problem, position_m] : recorded_) {
     const auto solver = make_step_solver("alternate:schur-rows", {});
-    for (const auto& [parts_name, part_of_body] : partitions_of(problem, 5, {"none"})) {
+    for (const auto& [parts_name, part_of_body] : partitions_of(problem, position_m, 5, {"none"})) {
       SCOPED_TRACE(name + " " + parts_name);
       Solution solution = start_from(problem, false);
       const SolveSummary summary = solver->solve(problem, part_of_body, solution);

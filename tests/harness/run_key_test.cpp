@@ -3,7 +3,9 @@
 
 #include <regex>
 
+#include "harness/base/names.h"
 #include "harness/files/build_info.h"
+#include "partition/registry.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -43,9 +45,13 @@ TEST(RunKey, IsWhatTheManifestHoldsAndRunsNothing) {
 
 TEST(RunKey, AllStandsForTheNamesItExpandsTo) {
   Arguments all = small_run("x"), named = all, fewer = all;
+  std::vector<std::string> names;
+  for (const PartitionerEntry& entry : partitioners())
+    if (reason_to_leave_out(entry, {}).empty()) names.push_back(entry.name);
   all.insert(all.end(), {"--partitioner", "all", "--refiner", "all"});
-  named.insert(named.end(), {"--refiner", "none,kl,fm"});
-  fewer.insert(fewer.end(), {"--refiner", "none,kl"});
+  const std::string refiners_named = joined(names_of(refiners()), ",");
+  named.insert(named.end(), {"--partitioner", joined(names, ","), "--refiner", refiners_named});
+  fewer.insert(fewer.end(), {"--partitioner", joined(names, ","), "--refiner", "none,kl"});
   EXPECT_EQ(key_of(all), key_of(named));
   EXPECT_NE(key_of(all), key_of(fewer));
 }

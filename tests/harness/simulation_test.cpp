@@ -321,14 +321,23 @@ std::vector<Algorithm> with_max_bodies(int max_bodies) {
   return list;
 }
 
+// Bodies in a row.
+BodyGraph row_of_bodies(const std::vector<double>& mass_kg, const std::vector<ConstraintLink>& links) {
+  std::vector<double> position_m;
+  for (std::size_t body = 0; body < mass_kg.size(); ++body)
+    position_m.insert(position_m.end(), {static_cast<double>(body), 0.0, 0.0});
+  return BodyGraph(mass_kg, links, std::nullopt, position_m);
+}
+
 // Islands {0, 2} and {1, 3, 4, 5, 6} and the single body 7, with at most three bodies a part.
 TEST(SmallIslands, BecomeOnePartEachAfterTheLargeOnes) {
   const std::vector<double> mass_kg = {1, 1, 1000, 1, 1, 1, 1, 1};  // mr alone would split {0, 2}
   const std::vector<ConstraintLink> links = {{0, 2, 3}, {0, 2, 1}, {1, 3, 3},
                                              {3, 4, 3}, {4, 5, 3}, {5, 6, 3}};
-  const BodyGraph graph(mass_kg, links);
+  const BodyGraph graph = row_of_bodies(mass_kg, links);
   for (const Algorithm& entry : with_max_bodies(3)) {
-    const Partition partition = partition_large_islands(graph, *make_partitioner(entry), 3);
+    const std::unique_ptr<Partitioner> partitioner = make_partitioner(entry);
+    const Partition partition = partition_large_islands(graph, *partitioner, 3);
     const std::vector<int>& part = partition.part_of_body;
     const PartitionMetrics metrics = measure_partition(graph, part);
     SCOPED_TRACE(entry.name);
@@ -337,7 +346,7 @@ TEST(SmallIslands, BecomeOnePartEachAfterTheLargeOnes) {
     EXPECT_EQ(part[0], partition.part_count - 2);
     EXPECT_EQ(metrics.parts, partition.part_count);
     EXPECT_LE(metrics.max_part_bodies, 3);
-    EXPECT_TRUE(metrics.contiguous);
+    EXPECT_TRUE(metrics.contiguous || !partitioner->promised().contiguous);
     for (const int body : {1, 3, 4, 5, 6}) EXPECT_LT(part[body], partition.part_count - 2);
   }
 }
@@ -351,7 +360,7 @@ TEST(SmallIslands, LargeGraphIsPartitionedAsBefore) {
       for (int k = 0; other < 30 && k < 1 + (body * other) % 4; ++k)
         links.push_back({body, other, 1 + (body + k) % 3});
   }
-  const BodyGraph graph(mass_kg, links);
+  const BodyGraph graph = row_of_bodies(mass_kg, links);
   for (const Algorithm& entry : with_max_bodies(5)) {
     const auto partitioner = make_partitioner(entry);
     EXPECT_EQ(partition_large_islands(graph, *partitioner, 5).part_of_body,

@@ -133,6 +133,30 @@ TEST(BodyGraph, refuses_weights_that_would_overflow) {
   EXPECT_THROW((Bodies{"", {1.0, 1.0}, {{0, 1, kMost}, {1, 0, 1}}}.graph()), std::invalid_argument);
 }
 
+std::string position_error(const std::vector<double>& position_m) {
+  try {
+    Bodies{"", std::vector<double>(20, 1.0), {}, position_m}.graph();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(BodyGraph, names_a_bad_position) {
+  EXPECT_EQ(position_error(std::vector<double>(60, -1.5)), "accepted");
+  EXPECT_EQ(position_error(std::vector<double>(59, 1.0)), "size of position_m is 59, allowed: 60");
+  std::vector<double> position_m(60, 1.0);
+  position_m[3 * 17 + 2] = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(position_error(position_m), "position_m of body 17 is inf, allowed: finite");
+}
+
+TEST(BodyGraph, may_have_no_positions) {
+  const BodyGraph graph(std::vector<double>(3, 1.0), {});
+  EXPECT_FALSE(graph.has_positions());
+  EXPECT_FALSE(graph.induced(std::vector<int>{0, -1, 0}, 1).front().has_positions());
+  EXPECT_TRUE(Bodies({"", {1.0}, {}}).graph().has_positions());
+}
+
 // The bodies of a set and the links among them, in their order.
 Bodies only(const Bodies& bodies, const std::vector<int>& set_of_body, int set) {
   Bodies kept{bodies.family, {}, {}};
@@ -141,6 +165,8 @@ Bodies only(const Bodies& bodies, const std::vector<int>& set_of_body, int set) 
     if (set_of_body[body] != set) continue;
     index[body] = kept.count();
     kept.mass_kg.push_back(bodies.mass_kg[body]);
+    kept.position_m.insert(kept.position_m.end(), &bodies.position_m[3 * body],
+                           &bodies.position_m[3 * body] + 3);
   }
   for (const ConstraintLink& link : bodies.links)
     if (link.body_a >= 0 && link.body_b >= 0 && index[link.body_a] >= 0 && index[link.body_b] >= 0)
@@ -164,6 +190,8 @@ TEST(InducedGraphs, are_those_of_the_links_among_their_bodies) {
         ASSERT_EQ(stored_weights(graphs[set], unit), stored_weights(expected, unit)) << "seed " << seed;
       for (int body = 0; body < expected.body_count(); ++body) {
         ASSERT_EQ(graphs[set].mass_kg(body), expected.mass_kg(body)) << "seed " << seed;
+        for (const int axis : {0, 1, 2})
+          ASSERT_EQ(graphs[set].position_m(body, axis), expected.position_m(body, axis)) << "seed " << seed;
         ASSERT_TRUE(std::ranges::equal(graphs[set].neighbours(body), expected.neighbours(body)));
       }
     }

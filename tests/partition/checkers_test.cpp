@@ -74,6 +74,15 @@ Partition run_promised(const Partition& answer, const PartsPromise& promise, int
   return partitioner.run(three_and_one().graph());
 }
 
+TEST(PartitionerDeathTest, run_asserts_how_far_parts_may_grow) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  FixedPartitioner partitioner({{0, 0, 0, 1}, 2});
+  partitioner.promise({.at_most_grown_bodies = true}, 2, 3);
+  EXPECT_EQ(partitioner.run(three_and_one().graph()).part_count, 2);
+  partitioner.promise({.at_most_grown_bodies = true}, 2, 2);
+  EXPECT_DEATH(partitioner.run(three_and_one().graph()), "");
+}
+
 constexpr PartsPromise kAll{.contiguous = true, .at_most_max_bodies = true, .grown_in_order = true};
 
 TEST(PartitionerDeathTest, run_asserts_its_postconditions) {

@@ -27,6 +27,7 @@ Algorithm algorithm_of(const AlgorithmEntry& entry, const PartitionOptions& opti
                    {"tau-mr", number_text(options.tau_mr)},
                    {"tau-mix", number_text(options.tau_mix)},
                    {"edge-weight", word(parameters::edge_weight(), static_cast<int>(options.edge_weight))},
+                   {"trials", std::to_string(options.trials)},
                    {"degree", word(parameters::degree(), static_cast<int>(options.degree))},
                    {"degree-scope", word(parameters::degree_scope(), static_cast<int>(options.degree_scope))},
                    {"as-printed", flag(options.as_printed)}});
@@ -40,8 +41,13 @@ Algorithm algorithm_of(const AlgorithmEntry& entry, const RefineOptions& options
 }
 
 RefineOptions options_of(const AlgorithmEntry& entry, const RefineOptions& options) {
-  const bool weighs = std::ranges::count(entry.parameters, std::string("edge-weight"), &Parameter::name) > 0;
-  return weighs ? options : RefineOptions{.max_bodies = options.max_bodies};
+  const auto has = [&](const std::string& name) {
+    return std::ranges::count(entry.parameters, name, &Parameter::name) > 0;
+  };
+  if (!has("edge-weight")) return RefineOptions{.max_bodies = options.max_bodies};
+  RefineOptions seen = options;
+  seen.as_printed = options.as_printed && has("as-printed");
+  return seen;
 }
 
 Partition run(const PartitionerEntry& entry, const BodyGraph& graph, const PartitionOptions& options) {

@@ -17,6 +17,7 @@ struct PartitionOptions {
   DegreeUnit degree = DegreeUnit::bodies;
   DegreeScope degree_scope = DegreeScope::left;
   bool as_printed = false;
+  int trials = 3;  // enough to choose from
 };
 
 struct RefineOptions {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <tuple>
 
+#include "tests/partition/slow_hill.h"
 #include "tests/partition/slow_twins.h"
 
 namespace cleave::partition_test {
@@ -140,7 +141,11 @@ RefineSummary fiduccia_mattheyses(const BodyGraph& graph, const RefineOptions& o
   return summary;
 }
 
-constexpr RefinerTwin kRefiners[] = {{"none", none}, {"kl", kernighan_lin}, {"fm", fiduccia_mattheyses}};
+constexpr RefinerTwin kRefiners[] = {{"none", none},
+                                     {"kl", kernighan_lin},
+                                     {"fm", fiduccia_mattheyses},
+                                     {"kl-hill", slow_kl_hill},
+                                     {"fm-hill", slow_fm_hill}};
 
 }  // namespace
 

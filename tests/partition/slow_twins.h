@@ -25,7 +25,7 @@ struct RefinerTwin {
 // mindp, maxdp, bfs, mr, mix.
 std::span<const PartitionerTwin> partitioner_twins();
 
-// none, kl, fm.
+// none, kl, fm, and those that climb hills (slow_hill.h).
 std::span<const RefinerTwin> refiner_twins();
 
 }  // namespace cleave::partition_test

@@ -127,11 +127,26 @@ void add_links_that_are_no_edge(Random& random, Bodies& bodies) {
   }
 }
 
+// With dice of their own, so that the graph of a seed stays what it was.
+void place(Random random, Bodies& bodies) {
+  const bool on_grid = random.chance(0.5);
+  const double size_m[3] = {random.real(0, 5), random.real(0, 5), random.real(0, 5)};
+  for (int k = 0; k < 3 * bodies.count(); ++k)
+    bodies.position_m.push_back(on_grid ? random.integer(-1, 2) : random.real(0, size_m[k % 3]));
+}
+
 const char* name_of(EdgeWeight unit) {
   return unit == EdgeWeight::pairs ? "pairs" : unit == EdgeWeight::constraints ? "constraints" : "rows";
 }
 
 }  // namespace
+
+std::vector<double> Bodies::positions() const {
+  if (!position_m.empty()) return position_m;
+  std::vector<double> row;
+  for (int body = 0; body < count(); ++body) row.insert(row.end(), {static_cast<double>(body), 0.0, 0.0});
+  return row;
+}
 
 std::vector<int> Random::permutation(int count) {
   std::vector<int> order(count);
@@ -163,6 +178,7 @@ Bodies random_bodies(std::uint64_t seed) {
   Bodies bodies = of_family(random, static_cast<int>(seed % kFamilies));
   if (random.chance(0.5)) bodies = shuffled(random, bodies);
   add_links_that_are_no_edge(random, bodies);
+  place(Random(seed + 9000), bodies);
   return bodies;
 }
 
@@ -201,8 +217,12 @@ Partition random_partition(Random& random, int bodies) {
 
 Bodies reversed(const Bodies& bodies) {
   Bodies result = bodies;
+  result.position_m = bodies.positions();
   const auto mirror = [&](int body) { return body == kStatic ? kStatic : bodies.count() - 1 - body; };
   std::ranges::reverse(result.mass_kg);
+  const std::vector<double> position_m = bodies.positions();
+  for (int body = 0; body < bodies.count(); ++body)
+    std::copy_n(position_m.begin() + 3 * mirror(body), 3, result.position_m.begin() + 3 * body);
   for (ConstraintLink& link : result.links) link = {mirror(link.body_a), mirror(link.body_b), link.rows};
   return result;
 }

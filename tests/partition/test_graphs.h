@@ -40,14 +40,16 @@ struct Bodies {
   std::string family;
   std::vector<double> mass_kg;
   std::vector<ConstraintLink> links;
+  std::vector<double> position_m = {};  // (n, 3); empty: in a row along x, a metre apart
 
   int count() const { return static_cast<int>(mass_kg.size()); }
-  BodyGraph graph() const { return BodyGraph(mass_kg, links); }
+  std::vector<double> positions() const;
+  BodyGraph graph() const { return BodyGraph(mass_kg, links, std::nullopt, positions()); }
 };
 
 // Families, by seed: empty, single and few bodies, path, star, tree, complete, pile, sparse and dense random,
 // disconnected, mostly isolated. Repeated links, links with static geometry and of a body with itself are
-// mixed in.
+// mixed in. Bodies stand anywhere, or on a grid that several may share a place of.
 Bodies random_bodies(std::uint64_t seed);
 
 // A heap of boxes on a grid: each touches those beside, over and, at times, diagonally below it.

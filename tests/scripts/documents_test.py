@@ -28,6 +28,7 @@ USED_BY = {
     "libgtest-dev": ("tests/CMakeLists.txt", "GTest"),
     "libbenchmark-dev": ("tests/CMakeLists.txt", "benchmark"),
     "libmetis-dev": ("CMakeLists.txt", "METIS"),
+    "libscotch-dev": ("CMakeLists.txt", "SCOTCH"),
     "python3": ("tests/CMakeLists.txt", "python3"),
     "chromium": ("tests/scripts/browser.py", "chromium"),
     "clang": ("CMakePresets.json", "clang"),

@@ -34,7 +34,7 @@ class FactorTasksTest : public testing::Test {
   // The flags of all branches.
   std::vector<char> run(ParallelTasks& tasks) {
     std::vector<char> factored(matrix_.branch_count(), 1);
-    factor_.run(Stage::factor_local, matrix_, factored, tasks);
+    factor_.run(Stage::factor_local, matrix_, std::vector<char>(matrix_.branch_count(), 1), factored, tasks);
     return factored;
   }
 

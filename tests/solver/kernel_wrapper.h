@@ -27,6 +27,7 @@ class KernelWrapper : public Kernel {
     kernel_->solve(f_v, f_r, dv, dlambda, tasks);
   }
   double local_mflop() const override { return kernel_->local_mflop(); }
+  double done_mflop() const override { return kernel_->done_mflop(); }
   bool can_be_carried() const override { return kernel_->can_be_carried(); }
   void apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) override {
     kernel_->apply_factor(f, x, tasks);

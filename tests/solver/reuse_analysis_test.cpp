@@ -75,6 +75,25 @@ TEST_P(ReuseAnalysisTest, SolvesEverySubsetAndWhatLiesOutside) {
   }
 }
 
+// Nothing but the analysis is kept. The second problem has the rows and the compliance of the first and starts with its active
+// set, so that by its weights a factor of the first would fit.
+TEST_P(ReuseAnalysisTest, GivesTheBytesOfAFreshSolverOnOtherNumbers) {
+  const StepProblem first = make_pile(7, {.columns = 3, .rows = 3, .layers = 3});
+  StepProblem second = first;
+  for (double& mass : second.mass) mass *= 2;
+  const std::vector<int> parts = sliced_parts(first.body_count(), 4);
+  const std::string solver = "pivot:" + GetParam() + "@predictor-sweeps=0";
+  const auto used = make_step_solver(solver + "@reuse-analysis=true");
+  Solution solution = cold_start(first);
+  ASSERT_TRUE(is_exact(first, used->solve(first, parts, solution), solution));
+  Solution kept = solution, fresh = solution;
+  const SolveSummary of_kept = used->solve(second, parts, kept);
+  const SolveSummary of_fresh = make_step_solver(solver)->solve(second, parts, fresh);
+  EXPECT_EQ(kept.impulse, fresh.impulse);
+  EXPECT_EQ(of_kept.factorizations, of_fresh.factorizations);
+  EXPECT_EQ(of_kept.factor_mflop_done, of_fresh.factor_mflop_done);
+}
+
 TEST_P(ReuseAnalysisTest, KeepsThePatternOfTheWholeForItsSubset) {
   const StepProblem whole = make_pile(7, {.columns = 3, .rows = 3, .layers = 3});
   const StepProblem fewer = without(whole, [](int a, int b, int) { return b >= 0 && (a + b) % 4 == 0; });

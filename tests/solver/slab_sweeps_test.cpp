@@ -31,7 +31,12 @@ struct Sweeps {
     step.velocity(impulse, velocity);
     sweeps.bind(step, tasks);
   }
-  void run(int count) { sweeps.run(count, impulse, velocity, tasks); }
+  int run(int count) {
+    sweeps.take_in(impulse, velocity, tasks);
+    const int changed = sweeps.run(count, tasks);
+    sweeps.give_out(impulse, velocity, tasks);
+    return changed;
+  }
 
   StageClock clock;
   ParallelTasks tasks;
@@ -79,7 +84,8 @@ void slow_sweep(Sweeps& s) {
           const auto velocity = [&](int side) { return s.velocity.data() + 6 * p.row_body[2 * r + side]; };
           for (int side = 0; side < (group.body_b < 0 ? 1 : 2); ++side)
             for (int c = 0; c < 6; ++c) w += p.jacobian[12 * r + 6 * side + c] * velocity(side)[c];
-          const double next = std::clamp(s.impulse[r] - w / s.step.diagonal()[r], p.lower[r], p.upper[r]);
+          const double whole = SlabSweeps::kOverRelaxation * w / s.step.diagonal()[r];
+          const double next = std::clamp(s.impulse[r] - whole, p.lower[r], p.upper[r]);
           for (int side = 0; side < (group.body_b < 0 ? 1 : 2); ++side)
             for (int c = 0; c < 6; ++c)
               velocity(side)[c] += s.step.mass_jacobian()[12 * r + 6 * side + c] * (next - s.impulse[r]);
@@ -102,6 +108,42 @@ TEST(SlabSweepsTest, AreThoseOfASlowSweepInTheSameOrder) {
     for (std::size_t c = 0; c < fast.velocity.size(); ++c)
       ASSERT_NEAR(fast.velocity[c], slow.velocity[c], 1e-4) << columns << " columns";
   }
+}
+
+// Where a row stands: at its lower bound, free, or at its upper one.
+std::vector<int> sides(const Sweeps& s) {
+  const StepProblem& p = s.step.problem();
+  std::vector<int> sides;
+  for (int r = 0; r < p.row_count(); ++r)
+    sides.push_back(s.impulse[r] <= p.lower[r] ? -1 : s.impulse[r] >= p.upper[r] ? 1 : 0);
+  return sides;
+}
+
+TEST(SlabSweepsTest, CountTheRowsThatChangeSides) {
+  const StepProblem problem = problem_of(9);
+  Sweeps s(problem);
+  int most = 0;
+  for (const int count : {1, 2, 5, 1}) {
+    const std::vector<int> before = sides(s);
+    const int told = s.run(count);
+    const std::vector<int> after = sides(s);
+    int changed = 0;
+    for (std::size_t r = 0; r < before.size(); ++r) changed += before[r] != after[r];
+    EXPECT_EQ(told, changed);
+    most = std::max(most, changed);
+  }
+  EXPECT_GT(most, 50);
+}
+
+TEST(SlabSweepsTest, GoOnWhereTheRunBeforeEnded) {
+  const StepProblem problem = problem_of(9);
+  Sweeps at_once(problem), in_turns(problem);
+  at_once.run(5);
+  in_turns.sweeps.take_in(in_turns.impulse, in_turns.velocity, in_turns.tasks);
+  for (const int count : {2, 1, 2}) in_turns.sweeps.run(count, in_turns.tasks);
+  in_turns.sweeps.give_out(in_turns.impulse, in_turns.velocity, in_turns.tasks);
+  EXPECT_EQ(in_turns.impulse, at_once.impulse);
+  EXPECT_EQ(in_turns.velocity, at_once.velocity);
 }
 
 TEST(SlabSweepsTest, GiveTheSameBytesOnAnyNumberOfThreadsInAnyOrder) {

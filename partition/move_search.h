@@ -1,0 +1,47 @@
+// What fm and fm-hill share: the allowed move of greatest gain, again and again.
+//
+// A move takes body i of part A into a part B adjacent to i; its gain is D_i(B) (gains.h). It is allowed when A keeps at least
+// one body and B has at most most_bodies after it, and when i is not locked. Ties go to the lowest body, then to the lowest
+// B. The heap holds every move that counts, except those parked because a part is full or would be emptied.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "partition/gains.h"
+#include "partition/partition.h"
+
+namespace cleave {
+
+// Which moves count: all, or those of positive gain.
+enum class MoveKind { all, improving };
+
+class MoveSearch {
+ public:
+  MoveSearch(const BodyGraph& graph, EdgeWeight unit, int most_bodies, MoveKind kind, Partition& partition);
+
+  // The best allowed move (its tag is the search's own); none when there is none.
+  std::optional<Exchange> find();
+  void make(const Exchange& move);
+  void lock(int body) { is_locked_[body] = 1; }
+  // Every body is free again, and the partition may have been changed.
+  void restart();
+
+ private:
+  void push_moves(int body);
+  bool park_if_blocked(const Exchange& move);
+  void unpark(int part);
+
+  const BodyGraph& graph_;
+  Partition& partition_;
+  const int most_bodies_;
+  const MoveKind kind_;
+  MoveGains gains_;
+  std::vector<int> bodies_;      // (parts)
+  std::vector<int> version_;     // (n): moves pushed before the body's gains last changed are stale
+  std::vector<char> is_locked_;  // (n)
+  std::vector<std::vector<Exchange>> parked_;  // (parts)
+  ExchangeHeap moves_;
+};
+
+}  // namespace cleave

@@ -1,0 +1,180 @@
+// multilevel: multilevel bisection by recursion (Karypis and Kumar 1998; Fiduccia and Mattheyses 1982).
+//
+// A set that is to become k parts is split into two that are to become ceil(k / 2) and floor(k / 2), with bodies in the same
+// proportion, until k is 1; at first k = ceil(n / max-bodies). A bisection (bisection.h) joins nodes by heavy-edge matching
+// until few are left, grows one side there, and refines on every level on the way back. At the end single bodies move
+// between all parts as in `fm`. Bounds: a part has at most B = floor((1 + max-growth) max-bodies + 1e-9) bodies; a set that is
+// still to be split L = ceil(log2 k) times lends its two sides one L-th of the room that its parts have up to B.
+//
+// effort=fast joins bodies twice before the recursion, to at most four, and splits what is left; effort=best splits bodies
+// and tries more starts. The dice choose the nodes that growing starts from.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <memory>
+#include <numeric>
+
+#include "partition/bisection.h"
+#include "partition/dice.h"
+#include "partition/gains.h"
+#include "partition/parameters.h"
+#include "partition/registry.h"
+
+namespace cleave {
+namespace {
+
+struct Effort {
+  const char* name;
+  int joinings;  // of bodies, before the recursion
+  BisectionOptions bisection;
+};
+
+constexpr int kMostJoined = 4;
+constexpr Effort kEfforts[] = {
+    {"fast", 2, {.coarse_nodes = 30, .growths = 1, .patience = 5, .most_passes = 2}},
+    {"best", 0, {.coarse_nodes = 24, .growths = 4, .patience = 16, .most_passes = 4}},
+};
+
+// Parts of the nodes of a graph.
+class Recursion {
+ public:
+  Recursion(const BisectionOptions& options, int most_bodies, std::uint64_t seed)
+      : bisection_(options), most_bodies_(most_bodies), dice_(seed) {}
+
+  Partition run(const LevelGraph& graph, int parts) {
+    partition_.part_of_body.resize(graph.node_count());
+    std::vector<int> nodes(graph.node_count());
+    std::iota(nodes.begin(), nodes.end(), 0);
+    split(graph, nodes, parts, 0);
+    return std::move(partition_);
+  }
+
+ private:
+  struct Depth {
+    std::array<LevelGraph, 2> halves;
+    std::array<std::vector<int>, 2> nodes;
+    std::vector<char> side;
+  };
+
+  // nodes: of the whole graph, by node of this one.
+  void split(const LevelGraph& graph, const std::vector<int>& nodes, int parts, std::size_t depth) {
+    if (parts == 1) {
+      for (const int node : nodes) partition_.part_of_body[node] = partition_.part_count;
+      ++partition_.part_count;
+      return;
+    }
+    if (depth == depths_.size()) depths_.emplace_back();
+    Depth& here = depths_[depth];
+    bisect(graph, parts, here.side);
+    graph.split(here.side, here.halves, here.nodes, place_);
+    for (int s = 0; s < 2; ++s) {
+      for (int& node : here.nodes[s]) node = nodes[node];
+      const int of_side = s == 0 ? (parts + 1) / 2 : parts / 2;
+      if (!here.nodes[s].empty()) split(here.halves[s], here.nodes[s], of_side, depth + 1);
+    }
+  }
+
+  void bisect(const LevelGraph& graph, int parts, std::vector<char>& side) {
+    const int bodies = graph.body_count();
+    const std::array<int, 2> of_side{(parts + 1) / 2, parts / 2};
+    const double each = static_cast<double>(bodies) / parts;
+    const double lent = (most_bodies_ - each) / std::bit_width(static_cast<unsigned>(parts - 1));
+    std::array<int, 2> most{};
+    for (int s = 0; s < 2; ++s) {
+      most[s] = static_cast<int>(std::ceil(of_side[s] * (each + lent) - 1e-9));
+      most[s] = std::min({most[s], of_side[s] * most_bodies_, std::max(1, bodies - of_side[1 - s])});
+    }
+    bisection_.run(graph, static_cast<int>(std::lround(of_side[0] * each)), most, dice_, side);
+  }
+
+  Bisection bisection_;
+  const int most_bodies_;
+  Dice dice_;
+  std::deque<Depth> depths_;
+  std::vector<int> place_;
+  Partition partition_;
+};
+
+// Bodies of parts above the bound move where that costs least, or to the part of fewest bodies where none next to them has
+// room. Nodes of several bodies may have left some.
+void unload(const BodyGraph& graph, EdgeWeight unit, int most_bodies, Partition& partition) {
+  std::vector<int> bodies = part_sizes(partition);
+  MoveGains gains(graph, unit, partition.part_count);
+  for (int part = 0; part < partition.part_count; ++part) {
+    while (bodies[part] > most_bodies) {
+      Exchange best{std::numeric_limits<int>::min(), 0, -1, 0};
+      for (int body = 0; body < graph.body_count(); ++body) {
+        if (partition.part_of_body[body] != part) continue;
+        for (const MoveGain& move : gains.of(body, partition.part_of_body)) {
+          const Exchange exchange{move.gain, body, move.part, 0};
+          if (bodies[move.part] < most_bodies && (best.second < 0 || best < exchange)) best = exchange;
+        }
+      }
+      if (best.second < 0) {
+        best.first = static_cast<int>(std::ranges::find(partition.part_of_body, part) -
+                                      partition.part_of_body.begin());
+        best.second = static_cast<int>(std::ranges::min_element(bodies) - bodies.begin());
+      }
+      partition.part_of_body[best.first] = best.second;
+      --bodies[part];
+      ++bodies[best.second];
+    }
+  }
+}
+
+class Multilevel final : public Partitioner {
+ public:
+  explicit Multilevel(const Settings& settings)
+      : max_bodies_(settings.integer("max-bodies")),
+        max_growth_(settings.number("max-growth")),
+        unit_(settings.word<EdgeWeight>(parameters::edge_weight())),
+        seed_(settings.integer("partition-seed")),
+        effort_(*std::ranges::find(kEfforts, settings.text("effort"),
+                                   [](const Effort& e) { return std::string(e.name); })),
+        last_(make_refiner("fm@max-growth=" + settings.text("max-growth") +
+                           "@edge-weight=" + settings.text("edge-weight"))) {}
+
+ private:
+  Partition do_run(const BodyGraph& graph) const override {
+    const int n = graph.body_count();
+    if (n <= max_bodies_) return {std::vector<int>(n, 0), n > 0 ? 1 : 0};
+    const int most_bodies = std::min(n, most_grown_bodies(max_bodies_, max_growth_));
+    std::vector<LevelGraph> levels(effort_.joinings + 1);
+    std::vector<std::vector<int>> coarse_of_node(effort_.joinings);
+    Coarsening coarsening;
+    levels[0].take(graph, unit_);
+    for (int k = 0; k < effort_.joinings; ++k) {
+      const int nodes = coarsening.match(levels[k], std::min(kMostJoined, most_bodies), coarse_of_node[k]);
+      coarsening.contract(levels[k], coarse_of_node[k], nodes, levels[k + 1]);
+    }
+    Recursion recursion(effort_.bisection, most_bodies, static_cast<std::uint64_t>(seed_));
+    Partition partition = recursion.run(levels.back(), wanted_parts(n, max_bodies_));
+    for (int k = effort_.joinings - 1; k >= 0; --k) {
+      std::vector<int> finer(coarse_of_node[k].size());
+      for (std::size_t node = 0; node < finer.size(); ++node)
+        finer[node] = partition.part_of_body[coarse_of_node[k][node]];
+      partition.part_of_body.swap(finer);
+    }
+    unload(graph, unit_, most_bodies, partition);
+    last_->run(graph, max_bodies_, partition);
+    return numbered_by_lowest_body(partition.part_of_body);  // without empty ones
+  }
+
+  int max_bodies_;
+  double max_growth_;
+  EdgeWeight unit_;
+  int seed_;
+  Effort effort_;
+  std::unique_ptr<Refiner> last_;
+};
+
+}  // namespace
+
+std::unique_ptr<Partitioner> make_multilevel(const Settings& settings) {
+  return std::make_unique<Multilevel>(settings);
+}
+
+}  // namespace cleave
