@@ -37,6 +37,10 @@ struct PartitionMetrics {
 // that no body carries are not counted as parts.
 PartitionMetrics measure_partition(const BodyGraph& graph, std::span<const int> part_of_body);
 
+// A small vertex cover of the cut edges, (n) 1 for its bodies: greedy, most uncovered cut edges first, lowest index on
+// ties.
+std::vector<char> cut_cover(const BodyGraph& graph, std::span<const int> part_of_body);
+
 // Total weight of the edges whose ends lie in different parts.
 long cut_weight(const BodyGraph& graph, std::span<const int> part_of_body, EdgeWeight unit);
 
