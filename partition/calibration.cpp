@@ -32,6 +32,16 @@ void visit_numbers(Cost& cost, Visitor&& visit) {
   for (int t = 0; t < kCostTerms; ++t) visit(cost_terms()[t].name, cost.cost[t], kAtLeastZero);
 }
 
+// A string of TOML.
+std::string quoted(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '"' || c == '\\') safe += '\\';
+    safe += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  }
+  return '"' + safe + '"';
+}
+
 std::string section_of(const KernelCost& cost) {
   return cost_kernel_names()[static_cast<int>(cost.kernel)] + (kThreads + std::to_string(cost.threads));
 }
@@ -174,7 +184,7 @@ KernelCost Calibration::of(CostKernel kernel, int threads) const {
 std::string calibration_text(const std::vector<std::pair<std::string, std::string>>& about,
                              const std::vector<KernelCost>& kernels) {
   std::string text = "schema = \"" + std::string(kSchema) + "\"\n";
-  for (const auto& [name, value] : about) text += name + " = \"" + value + "\"\n";
+  for (const auto& [name, value] : about) text += name + " = " + quoted(value) + "\n";
   for (const KernelCost& cost : kernels) {
     text += "\n[" + section_of(cost) + "]\n";
     visit_numbers(cost, [&](const char* name, double number, const Range&) {
