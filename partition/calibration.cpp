@@ -13,6 +13,7 @@
 #include "harness/base/hash.h"
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
+#include "partition/parameters.h"
 
 namespace cleave {
 
@@ -214,6 +215,11 @@ const Calibration& known_calibration(const std::string& fingerprint) {
     throw std::invalid_argument("calibration: " + fingerprint + " is not the shipped one, " +
                                 shipped().fingerprint + "; name its file: --calibration FILE");
   return found->second;
+}
+
+KernelCost kernel_cost(const Settings& settings) {
+  return known_calibration(settings.text("calibration"))
+      .of(settings.word<CostKernel>(parameters::cost_kernel()), settings.integer("cost-threads"));
 }
 
 }  // namespace cleave

@@ -10,8 +10,10 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "harness/base/parameter.h"
 #include "partition/cost_model.h"
 
 namespace cleave {
@@ -39,5 +41,9 @@ std::string read_calibration(const std::string& option, const std::string& text)
 
 // Throws std::invalid_argument for a fingerprint that nobody has read.
 const Calibration& known_calibration(const std::string& fingerprint);
+
+// What the parameters calibration, cost-kernel and cost-threads say together. Throws as known_calibration and
+// Calibration::of.
+KernelCost kernel_cost(const Settings& settings);
 
 }  // namespace cleave

@@ -17,7 +17,6 @@
 #include <span>
 #include <vector>
 
-#include "harness/base/parameter.h"
 #include "partition/body_graph.h"
 #include "partition/elimination.h"
 #include "partition/partition.h"

@@ -23,23 +23,28 @@ double sum(const CostFeatures& features, double PartCost::*of_part) {
   return total;
 }
 
+using Group = CostGroup;
+
 constexpr CostTerm kTerms[] = {
-    {"us_per_solve", "to begin and end a solve", 1e-3, false, [](const CostFeatures&, int) { return 1.0; }},
-    {"ns_per_row", "preparing and predicting, a row of the step", 1e-6, false,
+    {"us_per_solve", "to begin and end a solve", 1e-3, false, Group::sweeps_and_assembly,
+     [](const CostFeatures&, int) { return 1.0; }},
+    {"ns_per_row", "preparing and predicting, a row of the step", 1e-6, false, Group::sweeps_and_assembly,
      [](const CostFeatures& f, int) { return static_cast<double>(f.rows); }},
-    {"ns_per_block", "symbolic analysis, a block of a factor", 1e-6, false,
+    {"ns_per_block", "symbolic analysis, a block of a factor", 1e-6, false, Group::analysis,
      [](const CostFeatures& f, int) { return sum(f, &PartCost::blocks) + f.interface_blocks; }},
-    {"us_per_part", "dealing out, a part and pass", 1e-3, true,
+    {"us_per_part", "dealing out, a part and pass", 1e-3, true, Group::sweeps_and_assembly,
      [](const CostFeatures& f, int) { return static_cast<double>(f.parts.size()); }},
-    {"ns_per_row_and_pass", "assembling and checking, a row and pass", 1e-6, true,
+    {"ns_per_row_and_pass", "assembling and checking, a row and pass", 1e-6, true, Group::sweeps_and_assembly,
      [](const CostFeatures& f, int) { return static_cast<double>(f.rows); }},
-    {"ns_per_local_flop", "factoring the parts", 1e-6, true,
+    {"ns_per_local_block", "factoring the parts, a block", 1e-6, true, Group::local,
+     [](const CostFeatures& f, int threads) { return local_work(f, threads, &PartCost::blocks); }},
+    {"ns_per_local_flop", "factoring the parts", 1e-6, true, Group::local,
      [](const CostFeatures& f, int threads) { return local_work(f, threads, &PartCost::factor_flops); }},
-    {"ns_per_forming_flop", "forming a dense interface", 1e-6, true,
+    {"ns_per_forming_flop", "forming a dense interface", 1e-6, true, Group::forming,
      [](const CostFeatures& f, int threads) { return local_work(f, threads, &PartCost::form_flops); }},
-    {"ns_per_interface_flop", "factoring the interface", 1e-6, true,
+    {"ns_per_interface_flop", "factoring the interface", 1e-6, true, Group::interface,
      [](const CostFeatures& f, int) { return f.interface_flops; }},
-    {"ns_per_entry", "substituting, an entry of a factor and pass", 1e-6, true,
+    {"ns_per_entry", "substituting, an entry of a factor and pass", 1e-6, true, Group::substitution,
      [](const CostFeatures& f, int) { return sum(f, &PartCost::entries) + f.interface_entries; }},
 };
 

@@ -14,15 +14,20 @@
 
 namespace cleave {
 
+// What a solver's stages are told apart by, so that each is fitted to its own times.
+enum class CostGroup { sweeps_and_assembly, analysis, local, forming, interface, substitution };
+inline constexpr int kCostGroups = 6;
+
 struct CostTerm {
   const char* name;  // of its coefficient, with the unit
   const char* help;
   double unit_ms;  // of the coefficient
   bool of_a_pass;
+  CostGroup group;
   double (*count)(const CostFeatures& features, int threads);
 };
 
-inline constexpr int kCostTerms = 9;
+inline constexpr int kCostTerms = 10;
 std::span<const CostTerm, kCostTerms> cost_terms();
 
 // One kernel on so many threads.

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "partition/body_graph.h"
@@ -13,6 +14,7 @@ namespace cleave {
 struct Partition {
   std::vector<int> part_of_body;  // (n)
   int part_count = 0;
+  std::string choice = {};  // of a partitioner that chooses others: what made it, else empty
 };
 
 // Parts numbered by their lowest body. label_of_body: (n) equal within a part and nowhere else, in [0, n).

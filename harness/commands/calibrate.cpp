@@ -58,13 +58,40 @@ CostKernel kernel_of(const std::string& solver) {
   return static_cast<CostKernel>(found - names.begin());
 }
 
+CostGroup group_of(Stage stage) {
+  switch (stage) {
+    case Stage::analyze:
+      return CostGroup::analysis;
+    case Stage::factor_local:
+      return CostGroup::local;
+    case Stage::form_interface:
+      return CostGroup::forming;
+    case Stage::factor_interface:
+      return CostGroup::interface;
+    case Stage::solve:
+    case Stage::refine:
+      return CostGroup::substitution;
+    default:
+      return CostGroup::sweeps_and_assembly;
+  }
+}
+
+// Stages are those of the median repeat, scaled to the fastest.
+void set_times(const StepRecord& row, CostSample& sample) {
+  sample.t_s_ms = row.t_s_min_ms;
+  const double scale = row.t_s_min_ms / row.t_s_ms;
+  const auto add = [&](CostGroup group, double ms) {
+    sample.group_ms[static_cast<int>(group)] += scale * ms;
+  };
+  for (std::size_t stage = 0; stage < row.t_s_stage_ms.size(); ++stage)
+    add(group_of(static_cast<Stage>(stage)), row.t_s_stage_ms[stage]);
+  add(CostGroup::sweeps_and_assembly, row.t_s_other_ms);
+}
+
 CostSample sample_of(const StepRecord& row, const Outcome& outcome, const BodyGraph& graph) {
-  CostSample sample{graph,
-                    {outcome.part_of_body, row.parts},
-                    kernel_of(row.solver),
-                    row.threads,
-                    row.t_s_min_ms,
-                    row.factorizations};
+  CostSample sample{graph, {outcome.part_of_body, row.parts}, kernel_of(row.solver), row.threads};
+  sample.factorizations = row.factorizations;
+  set_times(row, sample);
   if (sample.kernel == CostKernel::monolithic) sample.parts = {std::vector<int>(graph.body_count(), 0), 1};
   if (sample.kernel == CostKernel::schur_rows && row.interface_unknowns > 0)
     sample.active_share = interface_size(1e6 * row.factor_mflop_interface) / row.interface_unknowns;

@@ -68,6 +68,7 @@ void set_split(const Repeats& repeats, StepRecord& row) {
   const Split& split = *repeats.front().split;
   row.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
   row.set_partition(measure_partition(split.graph, split.parts.part_of_body));
+  if (!split.parts.choice.empty()) row.auto_choice = split.parts.choice;
   row.t_graph_ms = median(repeats, [](const auto& repeat) { return repeat.split->graph_ms; });
   row.t_partition_ms = median(repeats, [](const auto& repeat) { return repeat.split->partition_ms; });
   row.t_refine_ms = median(repeats, [](const auto& repeat) { return repeat.split->refine_ms; });
@@ -180,6 +181,7 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   if (chosen.split) {
     chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
     chosen.outcome.parent_of_part = chosen.split->parent_of_part;
+    chosen.outcome.choice = chosen.split->parts.choice;
   }
   if (chosen.outcome.solved())
     set_measures(problem, chosen.split ? &chosen.split->graph : nullptr, chosen.outcome, row);

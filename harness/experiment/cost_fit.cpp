@@ -21,6 +21,20 @@ CostFeatures features_of(const CostSample& sample, double active_share) {
       .count(sample.parts.part_of_body, sample.parts.part_count);
 }
 
+void fit_group(std::span<const CostSample> samples, std::span<const std::array<double, kCostTerms>> units,
+               int group, KernelCost& cost) {
+  std::vector<int> terms;
+  for (int t = 0; t < kCostTerms; ++t)
+    if (static_cast<int>(cost_terms()[t].group) == group) terms.push_back(t);
+  std::vector<double> a, b;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    for (const int t : terms) a.push_back(units[k][t] / samples[k].t_s_ms);
+    b.push_back(samples[k].group_ms[group] / samples[k].t_s_ms);
+  }
+  const std::vector<double> fitted = nonnegative_least_squares(a, b, static_cast<int>(terms.size()));
+  for (std::size_t i = 0; i < terms.size(); ++i) cost.cost[terms[i]] = fitted[i];
+}
+
 }  // namespace
 
 // n (n + 1) (2 n + 1) / 6 = (n + 1/2)^3 / 3 - (n + 1/2) / 12, of which the second term is lost in the first.
@@ -36,18 +50,17 @@ double interface_size(double flops) {
 
 KernelCost fit_cost(std::span<const CostSample> samples) {
   KernelCost cost{samples.front().kernel, samples.front().threads, 1, 1, {}};
-  std::vector<double> factorizations, shares, a, b;
+  std::vector<double> factorizations, shares;
+  std::vector<std::array<double, kCostTerms>> units;
   for (const CostSample& sample : samples) {
-    factorizations.push_back(sample.factorizations);
     const CostFeatures features = features_of(sample, sample.active_share);
+    factorizations.push_back(sample.factorizations);
     if (features.cut_rows > 0) shares.push_back(sample.active_share);
-    for (const double unit : unit_costs_ms(features, sample.threads, sample.factorizations))
-      a.push_back(unit / sample.t_s_ms);
-    b.push_back(1);
+    units.push_back(unit_costs_ms(features, sample.threads, sample.factorizations));
   }
   cost.factorizations = median(std::move(factorizations));
   if (!shares.empty()) cost.active_share = median(std::move(shares));
-  std::ranges::copy(nonnegative_least_squares(a, b, kCostTerms), cost.cost.begin());
+  for (int group = 0; group < kCostGroups; ++group) fit_group(samples, units, group, cost);
   return cost;
 }
 

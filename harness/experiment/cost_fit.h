@@ -1,6 +1,7 @@
 // Fits the cost model (partition/cost_model.h) to measured solves, and says how far it is off.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct CostSample {
   CostKernel kernel = CostKernel::schur_rows;
   int threads = 1;
   double t_s_ms = 0;
+  std::array<double, kCostGroups> group_ms{};  // of which in the stages of each group
   int factorizations = 0;
   double active_share = 1;  // of the cut rows, those that were in the interface of schur-rows
 };
@@ -22,8 +24,9 @@ struct CostSample {
 // The number of rows of a dense interface whose factorisation takes so many flops, as cost_features.h counts them.
 double interface_size(double flops);
 
-// Samples of one kernel and number of threads, at least one. Expected numbers are medians; coefficients are the
-// nonnegative ones of least squared relative error, with what each sample really factored.
+// Samples of one kernel and number of threads, at least one. Expected numbers are medians. Each group of
+// terms is fitted to the times of its own stages, with what each sample really factored: nonnegative coefficients of least
+// squared error as a share of the whole solve.
 KernelCost fit_cost(std::span<const CostSample> samples);
 
 // Of one sample. counted: with its own number of factorisations and share of active rows; else with the expected ones,

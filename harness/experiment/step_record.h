@@ -113,6 +113,7 @@ struct StepRecord {
   std::string scene_options = "-";
   std::string schema_version = kStepsSchema;
   double factor_predicted_mb = kUnmeasured;
+  std::string auto_choice = "-";
 
   std::string parameter(const std::string& column) const {
     const auto found = parameters.find(column);
@@ -295,6 +296,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit("factor_mflop_done", r.factor_mflop_done,
         "Mflop of all factorisations of the solve, less what was kept of the one before");
   visit_parameters(ParameterColumn::Place::last);
+  visit("auto_choice", r.auto_choice,
+        "partitioner+refiner/kernel that the partitioner auto chose, the kernel being that of the model");
 }
 
 // "run_id,scene,...\n"

@@ -115,12 +115,17 @@ CostSample sample_with(const KernelCost& truth, std::uint64_t seed) {
   sample.factorizations = random.integer(2, 9);
   sample.active_share = random.uniform(0.3, 0.9);
   sample.t_s_ms = modelled_ms(sample, truth, true);
+  const CostFeatures features = CostCounter(sample.graph, truth.kernel, sample.active_share)
+                                    .count(sample.parts.part_of_body, sample.parts.part_count);
+  const auto units = unit_costs_ms(features, truth.threads, sample.factorizations);
+  for (int t = 0; t < kCostTerms; ++t)
+    sample.group_ms[static_cast<int>(cost_terms()[t].group)] += truth.cost[t] * units[t];
   return sample;
 }
 
 TEST(CostFit, FindsTheCostsThatMadeTheTimes) {
   for (const int threads : {1, 2}) {
-    KernelCost truth{CostKernel::schur_rows, threads, 1, 1, {20, 900, 80, 0.4, 40, 0.15, 0.1, 0.05, 0.5}};
+    KernelCost truth{CostKernel::schur_rows, threads, 1, 1, {20, 900, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
     std::vector<CostSample> fitted, others;
     for (std::uint64_t seed = 0; seed < 60; ++seed)
       (seed % 2 == 0 ? fitted : others).push_back(sample_with(truth, seed));

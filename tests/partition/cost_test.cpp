@@ -10,6 +10,8 @@
 #include "partition/calibration.h"
 #include "partition/cost_features.h"
 #include "partition/cost_model.h"
+#include "partition/partition_cost.h"
+#include "partition/registry.h"
 #include "tests/partition/slow_cost.h"
 #include "tests/partition/test_graphs.h"
 
@@ -106,9 +108,39 @@ TEST(CostModel, is_the_sum_of_its_terms) {
     entries += part.entries;
   }
   const double once_ns = 1e3 * 1 + 2 * features.rows + 3 * blocks;
-  const double pass_ns = 4e3 * features.parts.size() + 5 * features.rows + 6 * local + 7 * forming +
-                         8 * features.interface_flops + 9 * entries;
+  const double pass_ns = 4e3 * features.parts.size() + 5 * features.rows + 6 * blocks + 7 * local +
+                         8 * forming + 9 * features.interface_flops + 10 * entries;
   expect_near(1e-6 * (once_ns + 3 * pass_ns), modelled_ms(features, cost), "ms");
+}
+
+TEST(PartitionCost, stays_what_it_is_from_scratch) {
+  for (const CostKernel kernel : {CostKernel::schur_rows, CostKernel::schur_bodies}) {
+    int moves = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      Random random(seed);
+      const BodyGraph graph = pile(random, 4, 4, 2).graph();
+      Partition partition = random_partition(random, graph.body_count());
+      KernelCost cost{kernel, random.integer(1, 2), 3, 0.4, {}};
+      std::iota(cost.cost.begin(), cost.cost.end(), 1.0);
+      PartitionCost time(graph, cost, partition);
+      for (int k = 0; k < 60; ++k) {
+        const int body = random.integer(0, graph.body_count() - 1);
+        const int part = random.integer(0, partition.part_count - 1), own = partition.part_of_body[body];
+        if (part == own || part_sizes(partition)[own] == 1) continue;
+        const double before = time.ms();
+        const bool moved = time.move_if_cheaper(body, part);
+        if (moved) partition.part_of_body[body] = part;
+        moves += moved;
+        EXPECT_EQ(moved, time.ms() < before);
+        ASSERT_EQ(
+            time.ms(),
+            modelled_ms(CostCounter(graph, kernel, 0.4).count(partition.part_of_body, partition.part_count),
+                        cost))
+            << "seed " << seed;
+      }
+    }
+    EXPECT_GT(moves, 100);
+  }
 }
 
 TEST(CostModel, deals_the_longest_task_out_first) {
@@ -116,6 +148,76 @@ TEST(CostModel, deals_the_longest_task_out_first) {
   EXPECT_EQ(longest_first_makespan({5, 5, 4, 4, 3, 3, 3}, 3), 11);  // not the best, which is 9
   EXPECT_EQ(longest_first_makespan({5, 1}, 8), 5);
   EXPECT_EQ(longest_first_makespan({}, 2), 0);
+}
+
+// Every candidate of auto, made and modelled by itself.
+std::string least_choice(const BodyGraph& graph, const KernelCost& cost) {
+  std::string best;
+  double least_ms = 0;
+  const auto look = [&](const std::string& partitioner, int max_bodies, const std::string& refiner) {
+    Partition parts = make_partitioner(partitioner)->run(graph);
+    make_refiner(refiner)->run(graph, max_bodies, parts);
+    const double ms = modelled_ms(
+        CostCounter(graph, cost.kernel, cost.active_share).count(parts.part_of_body, parts.part_count), cost);
+    if (best.empty() || ms < least_ms) best = partitioner + "+" + refiner, least_ms = ms;
+  };
+  look("single", graph.body_count(), "none");
+  for (const int max_bodies : {10, 25, 50, 100, 200})
+    for (const std::string partitioner : {"mindp", "mix", "multilevel"})
+      for (const char* refiner : {"none", "fm"})
+        if (max_bodies < graph.body_count())
+          look(partitioner + "@max-bodies=" + std::to_string(max_bodies), max_bodies, refiner);
+  return best + "/" + cost_kernel_names()[static_cast<int>(cost.kernel)];
+}
+
+TEST(Auto, takes_what_is_cheapest_by_the_model) {
+  const Calibration& shipped = known_calibration(read_calibration("calibration", "shipped"));
+  for (const CostKernel kernel : {CostKernel::schur_rows, CostKernel::schur_bodies}) {
+    for (const int threads : {1, 2}) {
+      for (const int height : {1, 3, 9}) {
+        Random random(3);
+        const BodyGraph graph = pile(random, 5, 5, height).graph();
+        const Partition parts = make_partitioner("auto@cost-kernel=" +
+                                                 std::string(cost_kernel_names()[static_cast<int>(kernel)]) +
+                                                 "@cost-threads=" + std::to_string(threads))
+                                    ->run(graph);
+        EXPECT_EQ(parts.choice, least_choice(graph, shipped.of(kernel, threads)));
+      }
+    }
+  }
+}
+
+// A calibration in which only factoring the parts costs anything makes them small, one in which only parts cost, one.
+TEST(Auto, follows_the_calibration) {
+  Random random(3);
+  const BodyGraph graph = pile(random, 6, 6, 4).graph();
+  const auto choice_of = [&](int term) {
+    KernelCost cost{CostKernel::schur_rows, 1, 1, 1, {}};
+    cost.cost[term] = 1;
+    const std::string path = testing::TempDir() + "auto_test.toml";
+    std::ofstream(path, std::ios::binary) << calibration_text({}, {cost});
+    const std::string fingerprint = read_calibration("--calibration", path);
+    std::remove(path.c_str());
+    return make_partitioner("auto@calibration=" + fingerprint)->run(graph).choice;
+  };
+  EXPECT_EQ(choice_of(3), "single+none/schur-rows");
+  EXPECT_NE(choice_of(6).find("max-bodies=10"), std::string::npos) << choice_of(6);
+}
+
+TEST(Auto, chooses_again_when_the_graph_has_doubled) {
+  Random random(3);
+  const BodyGraph small = pile(random, 4, 4, 2).graph(), large = pile(random, 6, 6, 12).graph();
+  const BodyGraph empty(std::vector(5, 1.0), {});
+  const std::unique_ptr<Partitioner> once = make_partitioner("auto"), fixed = make_partitioner("auto");
+  EXPECT_EQ(once->run(empty).choice, "single+none/schur-rows");  // nothing to choose by
+  const std::string of_small = once->run(small).choice, of_large = once->run(large).choice;
+  EXPECT_EQ(of_large, make_partitioner("auto")->run(large).choice);
+  EXPECT_EQ(once->run(small).choice, of_large);  // kept
+  const std::string other = of_large == of_small ? "mix@max-bodies=100+fm/schur-rows" : of_small;
+  fixed->keep_choice(other);
+  EXPECT_EQ(fixed->run(large).choice, other);
+  EXPECT_THROW(fixed->keep_choice("mix@max-bodies=99+fm/schur-rows"), std::invalid_argument);
+  EXPECT_THROW(make_partitioner("mix")->keep_choice(other), std::invalid_argument);
 }
 
 std::vector<KernelCost> some_costs() {
@@ -174,7 +276,7 @@ TEST(Calibration, names_the_line_that_is_wrong) {
   EXPECT_EQ(error_of(replaced(good, "active_share = 0.25\n", "")),
             "text lacks active_share of [schur-rows.threads-1]");
   EXPECT_EQ(error_of(replaced(good, "threads-2", "threads-1")),
-            "text: line 16: [schur-rows.threads-1] stands twice");
+            "text: line 17: [schur-rows.threads-1] stands twice");
   EXPECT_EQ(error_of(replaced(good, "us_per_solve = 0.5", "us_per_solve = -1")),
             "text: line 6: us_per_solve: -1 is not in [0, inf)");
   EXPECT_EQ(error_of(replaced(good, "us_per_solve", "us_per_solves")).substr(0, 43),

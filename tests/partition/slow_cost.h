@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "partition/cost_features.h"
+#include "partition/partition.h"
+#include "tests/partition/paper_options.h"
 
 namespace cleave::partition_test {
 
@@ -19,5 +21,8 @@ SlowFactor slow_factor(const BodyGraph& graph, std::span<const int> bodies, std:
 
 CostFeatures slow_cost_features(const BodyGraph& graph, std::span<const int> part_of_body, int part_count,
                                 CostKernel kernel, double active_share);
+
+// fm-cost at its defaults: every candidate is a partition of its own, counted from scratch.
+RefineSummary slow_fm_cost(const BodyGraph& graph, const RefineOptions& options, Partition& partition);
 
 }  // namespace cleave::partition_test
