@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "harness/base/names.h"
+#include "partition/merge_small.h"
 #include "partition/parameters.h"
 
 namespace cleave {
@@ -85,26 +87,32 @@ Algorithm read_row(std::span<const Entry> table, const std::string& option, cons
 
 std::span<const PartitionerEntry> partitioners() {
   static const PartitionerEntry table[] = {
-      {{"mindp", "grow by the body of least degree", kGrowing, {max_bodies(), degree(), degree_scope()}},
+      {{"mindp",
+        "grow by the body of least degree",
+        kGrowing,
+        {max_bodies(), degree(), degree_scope(), merge_small()}},
        kGrown,
        true,
        make_mindp},
       {{"maxdp",
         "grow by the body of greatest degree",
         kGrowing,
-        {max_bodies(), degree(), degree_scope(), as_printed()}},
+        {max_bodies(), degree(), degree_scope(), as_printed(), merge_small()}},
        kGrown,
        true,
        make_maxdp},
-      {{"bfs", "grow breadth first", kGrowing, {max_bodies()}}, kGrown, true, make_bfs},
-      {{"mr", "grow by bodies whose mass ratio stays below tau-mr", kGrowing, {max_bodies(), tau_mr()}},
+      {{"bfs", "grow breadth first", kGrowing, {max_bodies(), merge_small()}}, kGrown, true, make_bfs},
+      {{"mr",
+        "grow by bodies whose mass ratio stays below tau-mr",
+        kGrowing,
+        {max_bodies(), tau_mr(), merge_small()}},
        kClosedEarly,
        true,
        make_mass_ratio},
       {{"mix",
         "grow by least degree, then by greatest edge weight into the part",
         "Liu & Andrews 2022, Algorithm 1",
-        {max_bodies(), tau_mix(), edge_weight(), degree(), degree_scope(), as_printed()}},
+        {max_bodies(), tau_mix(), edge_weight(), degree(), degree_scope(), as_printed(), merge_small()}},
        kGrown,
        true,
        make_mix},
@@ -245,6 +253,10 @@ std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm) {
   if (max_bodies && settings.has("max-growth"))
     grown_bodies = most_grown_bodies(*max_bodies, settings.number("max-growth"));
   made->promise(entry.promise, max_bodies, grown_bodies);
+  if (!settings.has("merge-small") || !settings.flag("merge-small")) return made;
+  made = merge_small(std::move(made), *max_bodies);
+  made->promise({.contiguous = entry.promise.contiguous, .at_most_grown_bodies = true}, max_bodies,
+                most_merged_bodies(*max_bodies));
   return made;
 }
 

@@ -17,6 +17,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/experiment/problem_graph.h"
@@ -66,20 +67,24 @@ Pair make_pair_of(const PartitionerEntry& entry, const std::string& parameters, 
 
 std::vector<std::string> variants_of(const std::string& partitioner) {
   if (partitioner == "multilevel") return {"@effort=fast", "@effort=best"};
-  if (partitioner == "scotch") return {"", "@scotch-strategy=speed", "@scotch-strategy=quality"};
+  if (partitioner == "scotch")
+    return {"", "@scotch-strategy=balance", "@scotch-strategy=speed", "@scotch-strategy=quality"};
   return {""};
 }
 
-// Every refiner after the partitioners of the paper, none after the others.
+// Every refiner after the partitioners of the paper, none after the others; crumbs folded in before fm and fm-hill.
 std::vector<Pair> all_pairs() {
   std::vector<Pair> pairs;
   for (const PartitionerEntry& entry : partitioners()) {
-    if (!entry.unavailable.empty() || entry.name == "file") continue;
+    if (!entry.unavailable.empty() || std::string_view(entry.name) == "file") continue;
     for (const std::string& parameters : variants_of(entry.name)) {
       for (const RefinerEntry& refiner : refiners())
-        if (entry.of_paper || refiner.name == "none")
+        if (entry.of_paper || std::string_view(refiner.name) == "none")
           pairs.push_back(make_pair_of(entry, parameters, refiner.name));
     }
+    if (!entry.of_paper) continue;
+    for (const char* refiner : {"fm", "fm-hill"})
+      pairs.push_back(make_pair_of(entry, "@merge-small=true", refiner));
   }
   return pairs;
 }
@@ -98,6 +103,8 @@ void count_cut(const BodyGraph& graph, const Pair& pair, benchmark::UserCounters
       within.push_back(metrics);
     }
   }
+  counters["bodies"] = graph.body_count();
+  counters["edges"] = graph.edge_count();
   counters["above_bound"] = above;
   if (within.empty()) return;
   std::ranges::stable_sort(within, {}, &PartitionMetrics::interface_rows);

@@ -302,6 +302,7 @@ TEST_F(Verify, FindsAChangeOfEveryCellOfTheOptions) {
                                                                     {"max_growth", "0.5"},
                                                                     {"as_printed", "1"},
                                                                     {"skip_small_islands", "1"},
+                                                                    {"merge_small", "1"},
                                                                     {"cold", "1"},
                                                                     {"session", "1"},
                                                                     {"mode", "lockstep"},

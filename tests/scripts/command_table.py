@@ -69,6 +69,7 @@ COMMANDS = {
     "extremes_table": Command({"--csv": "output file"}, ("{extremes}",), ("{extremes}",), ("{extremes}",)),
     "fuzz": Command({"--minutes": "count", "--target": "fuzz targets", "--minimise": "", "--page": "output file", **MEASURED}),
     "idle_cost": Command({"--rounds": "count", **MEASURED}, runs=True),
+    "karger": Command(MEASURED, runs=True),
     "ladder": Command({"--full": "", "--rung": "rungs", "--solver": "climbers", "--steps": "count", "--timeout": "seconds",
                        "--jobs": "count", **MEASURED}, runs=True),
     "modelled_workers": Command({"--rounds": "count", **MEASURED}, runs=True),

@@ -213,6 +213,23 @@ class ColdStartsTest(Measurement):
         self.check_status_refused()
 
 
+class KargerTest(Measurement):
+    script = "karger"
+
+    def test_every_scene_meets_every_number_of_trials(self):
+        self.run_it()
+        calls = self.calls()
+        self.assertEqual(len(calls), 4 * 2)
+        self.assertIn("karger@trials=10000", calls[-1])
+        self.assertEqual(len(self.rows("karger.csv")), 4 * 4 * 7 * 2)
+
+    def test_cells_that_are_not_solved_are_refused(self):
+        with unittest.mock.patch.dict(os.environ, STAND_IN_STATUS="not_converged"):
+            said = self.run_it(code=1).stderr.splitlines()
+        self.assertIn("56 of 56 replayed cells are not ok", said[-1])
+        self.assertFalse((self.directory / "out").exists())
+
+
 class AblationTest(Measurement):
     script = "ablation"
 
@@ -235,9 +252,11 @@ piles = [word.split("/")[-2] for word in sys.argv[1:] if word.endswith(".h5")]
 rows = ["exact", "pgs:100", "pgs:300", "pgs:700", "cholmod:supernodal", "cholmod:simplicial", "factor", "assemble",
         "schur_bodies:1", "schur_bodies:2"]
 json.dump({"benchmarks": [
-    {"name": f"{row}/{pile}/x", "run_type": "iteration", "real_time": time + (8 if row == "exact" else 0), "rows": 1000,
-     "factorizations": 5, "residual_m_per_s": 1e-12, "mflop": 6}
-    for row in rows for pile in piles for time in (2, 2, 50)]}, open(path, "w"))
+    {"name": f"{row}/{pile}/x", "run_name": f"{row}/{pile}", "cpu_time": 1, "run_type": "iteration",
+     "real_time": time + (8 if row == "exact" else 0), "rows": 1000, "factorizations": 5, "residual_m_per_s": 1e-12, "mflop": 6}
+    for row in rows for pile in piles for time in (2, 2, 50)] + [
+    {"name": "rocks_200/mix+fm/repeats:3", "run_name": "rocks_200/mix+fm", "cpu_time": time, "real_time": 3, "bodies": 200}
+    for time in (1, 2, 9)]}, open(path, "w"))
 """
 
 
@@ -273,12 +292,14 @@ class SolverBenchmarkTest(BenchmarkCase):
 class PartitionBenchmarkTest(BenchmarkCase):
     script, program_name = "benchmark_partitioners", "partition_benchmark"
 
-    def test_medians_of_the_repetitions_are_written(self):
+    def test_steps_are_recorded_and_medians_written(self):
         self.run_it("--repetitions", 7)
-        self.assertEqual(self.calls(), ["benchmark --benchmark_repetitions=7 --benchmark_report_aggregates_only=true "
-                                        f"--benchmark_out={self.directory}/out/partition_benchmark.json.part "
-                                        "--benchmark_out_format=json"])
-        self.assertIn("benchmarks", json.loads((self.directory / "out" / "partition_benchmark.json").read_text()))
+        calls = self.calls()
+        self.assertIn("--benchmark_repetitions=7", calls[-1])
+        self.assertIn("/rocks_10000.h5", calls[-1])
+        self.assertEqual(len(calls), 1 + calls[-1].count("--problem"))
+        rows = json.loads((self.directory / "out" / "partition_benchmark.json").read_text())["benchmarks"]
+        self.assertIn({"name": "rocks_200/mix+fm", "cpu_time": 2, "bodies": 200}, rows)
 
     def test_bad_input_is_one_line(self):
         self.check_least("--repetitions", 1)
