@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "harness/base/hash.h"
+#include "harness/world/joint_axes.h"
 #include "harness/world/overlapping_boxes.h"
 
 namespace cleave {
@@ -176,8 +177,10 @@ std::unique_ptr<OdeWorld> OdeWorld::rebuilt(double erp, double cfm) const {
     copy->set_state(i, state(i));
     copy_forces(content_.bodies[i], copy->content_.bodies[i]);
   }
-  for (std::size_t j = 0; j < content_.joints.size(); ++j)
+  for (std::size_t j = 0; j < content_.joints.size(); ++j) {
     (dJointIsEnabled(content_.joints[j]) ? dJointEnable : dJointDisable)(copy->content_.joints[j]);
+    copy_axis(content_.joints[j], copy->content_.joints[j]);
+  }
   return copy;
 }
 
