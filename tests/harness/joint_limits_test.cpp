@@ -69,7 +69,9 @@ void expect_sixth_row(const StepProblem& problem, Stop stop, const Motor& motor)
   if (stop == Stop::both_in_one) bounds = {-kInfinity, kInfinity};
   EXPECT_EQ(problem.lower[5], bounds[0]);
   EXPECT_EQ(problem.upper[5], bounds[1]);
-  if (!is_at_stop(stop)) EXPECT_EQ(problem.rhs[5], motor.speed);
+  if (!is_at_stop(stop)) {
+    EXPECT_EQ(problem.rhs[5], motor.speed);
+  }
 }
 
 using Change = std::function<void(const AxisKind&, dJointID)>;
