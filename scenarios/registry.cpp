@@ -12,6 +12,11 @@
 #include "scenarios/silo.h"
 
 namespace cleave {
+namespace {
+
+bool always(const Settings&) { return true; }
+
+}  // namespace
 
 std::span<const SceneEntry> scenes() {
   static const SceneEntry table[] = {
@@ -33,10 +38,12 @@ std::span<const SceneEntry> scenes() {
       {{"crane",
         "a crane on outriggers slews a heavy load on a cable of light links (--dt 0.001 --cfm 1e-10)",
         "Peiret et al. 2019; scenarios/README.md", crane_parameters()},
-       make_crane},
+       make_crane,
+       always},
       {{"mixed_site", "a crane lifts a rock out from under a pile (--dt 0.001 --cfm 1e-10)",
         "scenarios/README.md", mixed_site_parameters()},
-       make_mixed_site},
+       make_mixed_site,
+       always},
       {{"ladder_stack", "equal boxes in a stack, their contacts reported as often as asked for",
         "scenarios/README.md", ladder_stack_parameters()},
        make_ladder_stack},
@@ -59,7 +66,8 @@ std::span<const SceneEntry> scenes() {
        make_ladder_free},
       {{"file", "bodies, joints and events that a file describes", "scenarios/FILE_SCENES.md",
         file_scene_parameters(), file_scene_content_id},
-       make_file_scene},
+       make_file_scene,
+       file_scene_names_groups},
   };
   return table;
 }

@@ -6,6 +6,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -235,6 +236,16 @@ std::vector<double> OdeWorld::positions_m() const {
     positions_m.insert(positions_m.end(), position_m.begin(), position_m.end());
   }
   return positions_m;
+}
+
+std::vector<int> OdeWorld::body_groups() const {
+  std::map<std::string, int> number_of_name;
+  std::vector<int> groups;
+  for (const std::string& name : content_.body_group)
+    groups.push_back(
+        name.empty() ? -1
+                     : number_of_name.emplace(name, static_cast<int>(number_of_name.size())).first->second);
+  return number_of_name.empty() ? std::vector<int>() : groups;
 }
 
 void OdeWorld::set_state(int body, const BodyState& state) {
