@@ -71,7 +71,8 @@ void check_outside_parts(const StoredPartition& partition, const std::string& co
   std::string error;
   if (!std::regex_match(fingerprint, form))
     error = "; fingerprint of the files = '" + fingerprint + "', allowed: 16 hexadecimal digits";
-  if (!partition.parent_of_part.empty()) error += "; a tree of parts, allowed: one level, as parts from files are";
+  if (!partition.parent_of_part.empty())
+    error += "; a tree of parts, allowed: one level, as parts from files are";
   try {
     read_stored_refiner(partition);
   } catch (const std::invalid_argument& wrong) {
@@ -96,7 +97,8 @@ void check_split(const ProblemFile& file, const StoredPartition& partition, cons
   };
   Split again;
   try {
-    again = Splitter(read_split_setup(partition)).run(file.problem, file.step, known_positions(file));
+    again = Splitter(read_split_setup(partition))
+                .run(file.problem, file.step, {known_positions(file), known_groups(file)});
   } catch (const std::invalid_argument& error) {
     return not_again(error);
   } catch (const CannotSplit& error) {

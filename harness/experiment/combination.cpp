@@ -113,7 +113,8 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
 }
 
 std::optional<Split> Combination::split(const StepProblem& problem, int step) const {
-  return splitter_ ? std::optional(splitter_->run(problem, step, context_->position_m)) : std::nullopt;
+  if (!splitter_) return std::nullopt;
+  return splitter_->run(problem, step, {context_->position_m, context_->body_group});
 }
 
 Combination::Repeat Combination::repeat(const StepProblem& problem, int step) {

@@ -69,9 +69,13 @@ void expect_exact(const Finished& run, std::size_t rows) {
 
 TEST(Smoke, EverySceneRunsSmallWithAllCombinations) {
   const std::map<std::string, Arguments> small = {
-      {"chain_drop", {"--links", "12"}}, {"log_tower", {"--layers", "4", "--logs", "2"}},
-      {"rock_pile", {"--bodies", "12"}}, {"large_rock_pile", {"--bodies", "12"}},
+      {"chain_drop", {"--links", "12"}},
+      {"log_tower", {"--layers", "4", "--logs", "2"}},
+      {"rock_pile", {"--bodies", "12"}},
+      {"large_rock_pile", {"--bodies", "12"}},
       {"silo", {"--bodies", "12"}},
+      {"crane", {"--links", "6", "--dt", "0.001", "--cfm", "1e-10"}},
+      {"mixed_site", {"--links", "50", "--rings", "1", "--dt", "0.001", "--cfm", "1e-10"}},
   };
   for (const ShippedScene& scene : shipped_scenes()) {
     const auto sizes = small.find(scene.name);
