@@ -10,11 +10,13 @@ namespace {
 constexpr double kCell_m = 0.7, kHeight_m = 0.6;
 constexpr double kLeastFill = 0.84,
                  kMostFill = 0.88;  // of a cell, along either edge: the cable has room between rocks
+constexpr double kPlay_m = 0.005;   // of a rock off the middle of its cell, along x and y
 constexpr double kOverlap_m = 1e-7;
 constexpr double kGravity_m_per_s2 = 9.81;  // that the hoist is made for
 constexpr int kHoistStep = 20;
 constexpr double kHoistSpeed_m_per_s = 0.5, kHoistWay_m = 4;
-constexpr double kHoistForce_n = 30e3;  // beyond the weight of hoist and cable; the rock and what lies on it want it
+constexpr double kHoistForce_n =
+    30e3;  // beyond the weight of hoist and cable; the rock and what lies on it want it
 constexpr double kSlewSpeed_rad_per_s = 0.1, kSlewAcceleration_rad_per_s2 = 0.05, kSlewWay_rad = 0.6;
 
 class MixedSite : public Scene {
@@ -65,7 +67,8 @@ class MixedSite : public Scene {
   // x, y: from the cable, before the turn with the boom.
   dBodyID add_rock(SceneBuilder& builder, double x, double y, int layer, double mass_kg,
                    SceneRandom& random) {
-    Pose pose = turned_with_boom({{x, y, 0}});
+    const double off_x = random.uniform(-kPlay_m, kPlay_m), off_y = random.uniform(-kPlay_m, kPlay_m);
+    Pose pose = turned_with_boom({{x + off_x, y + off_y, 0}});
     pose.position_m[0] += crane_.hook_m[0];
     pose.position_m[1] += crane_.hook_m[1];
     pose.position_m[2] = (layer + 0.5) * kHeight_m - (layer + 1) * kOverlap_m;

@@ -30,7 +30,7 @@ struct RecordedScene {
 
 // Small, but with contacts, joints, several parts and several islands. Cold rocks, a chain as it comes to lie
 // in the funnel, a tower at rest and hit by the ball, masses of 10, 100 and 1000 kg, a softer and a stiffer
-// pile, a crane with a motor and a stop.
+// pile, a crane that lifts a rock by a motor.
 const std::vector<RecordedScene> kScenes = {
     {"chain", {"--scene", "chain_drop", "--links", "24"}, "70,100"},
     {"short_chain", {"--scene", "chain_drop", "--links", "12"}, "69"},
@@ -39,7 +39,9 @@ const std::vector<RecordedScene> kScenes = {
     {"large_pile", {"--scene", "large_rock_pile", "--bodies", "30"}, "40,120"},
     {"soft_pile", {"--scene", "rock_pile", "--bodies", "30", "--cfm", "1e-3"}, "40,120"},
     {"stiff_pile", {"--scene", "large_rock_pile", "--bodies", "30", "--cfm", "1e-7"}, "120"},
-    {"crane", {"--scene", "crane", "--links", "8", "--dt", "0.001", "--cfm", "1e-8"}, "20"},
+    {"site",
+     {"--scene", "mixed_site", "--links", "50", "--rings", "1", "--dt", "0.001", "--cfm", "1e-8"},
+     "40"},
 };
 
 struct Recorded {
