@@ -19,6 +19,7 @@ std::unique_ptr<Partitioner> make_mix(const Settings& settings);
 std::unique_ptr<Partitioner> make_multilevel(const Settings& settings);
 std::unique_ptr<Partitioner> make_single(const Settings& settings);
 std::unique_ptr<Partitioner> make_random(const Settings& settings);
+std::unique_ptr<Partitioner> make_semantic(const Settings& settings);
 std::unique_ptr<Partitioner> make_geometric(const Settings& settings);
 std::unique_ptr<Partitioner> make_karger(const Settings& settings);
 std::unique_ptr<Partitioner> make_file(const Settings& settings);
@@ -157,6 +158,20 @@ std::span<const PartitionerEntry> partitioners() {
        {.at_most_max_bodies = true},
        false,
        make_geometric},
+      {{"semantic",
+        "the groups of bodies that the scene names",
+        "Peiret et al. 2019",
+        {max_bodies(),
+         {.name = "split",
+          .kind = Parameter::Kind::word,
+          .default_value = "whole",
+          .words = {"whole", "chunks"},
+          .help = "one part a group, or groups cut into runs of at most max-bodies bodies",
+          .source = "partition/README.md"}}},
+       {},
+       false,
+       make_semantic,
+       true},
       {{"karger",
         "contract edges at random, best of several trials",
         "Karger 1993; Karger & Stein 1996",

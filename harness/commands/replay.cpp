@@ -59,8 +59,9 @@ std::string asks_for_series(const RunOptions& options) {
                                                                : "--repartition " + options.repartition.text;
 }
 
-// Before anything is created.
-void check_files(const ReplayOptions& options) {
+// Before anything is created. What `all` stands for splits every file.
+void check_files(ReplayOptions& options) {
+  std::string without_groups;
   std::string before;
   std::tuple<std::string, std::uint64_t, int, int> last;
   for (const std::string& path : options.files) {
@@ -70,10 +71,18 @@ void check_files(const ReplayOptions& options) {
         !option.empty() && !before.empty() && now != last)
       throw std::invalid_argument("FILES: " + path + " is not the step after that of " + before + ", which " +
                                   option + " asks for");
+    if (!file.body_group) without_groups = path;
     before = path;
     last = now;
     ++std::get<3>(last);
   }
+  if (without_groups.empty()) return;
+  const auto why = [&](const Algorithm& partitioner) {
+    return needs_groups(partitioner)
+               ? "which splits by groups of bodies, and " + without_groups + " names none"
+               : std::string();
+  };
+  leave_out_of_all(why, options.solve);
 }
 
 // The files of --write-solutions must not meet each other or replace what is replayed.
@@ -175,6 +184,7 @@ class Replay {
     std::vector<double> recorded = file.problem.warm_impulse;
     if (options_.cold) std::ranges::fill(file.problem.warm_impulse, 0.0);
     context_.position_m = known_positions(file);
+    context_.body_group = known_groups(file);
     const std::vector<Outcome> outcomes =
         measure_all(combinations_, file.problem, summary_.measured_steps, rows);
     if (options_.write_solutions) {
@@ -194,7 +204,7 @@ class Replay {
   RunSummary summary_;
 };
 
-int replay(const ReplayOptions& options, const std::vector<std::string>& argv) {
+int replay(ReplayOptions options, const std::vector<std::string>& argv) {
   if (options.files.empty()) throw std::invalid_argument("FILES: at least one problem file is required");
   check_files(options);
   if (options.write_solutions) check_names(options);

@@ -113,7 +113,8 @@ void check_split(const ProblemFile& file, const StoredPartition& partition, cons
   };
   Split again;
   try {
-    again = Splitter(read_split_setup(partition)).run(file.problem, file.step, known_positions(file));
+    again = Splitter(read_split_setup(partition))
+                .run(file.problem, file.step, {known_positions(file), known_groups(file)});
   } catch (const std::invalid_argument& error) {
     return not_again(error);
   } catch (const CannotSplit& error) {

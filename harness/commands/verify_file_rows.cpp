@@ -129,8 +129,8 @@ void check_grown(const ProblemFile& file, const StoredPartition& partition, Step
   if (content_of("partitioner", algorithm_name(partition.partitioner)) != nullptr) return;
   try {
     if (read_origin(partition) != PartitionOrigin::fresh) return;
-    const Split split =
-        Splitter(read_split_setup(partition)).run(file.problem, file.step, known_positions(file));
+    const Split split = Splitter(read_split_setup(partition))
+                            .run(file.problem, file.step, {known_positions(file), known_groups(file)});
     found.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
   } catch (const std::invalid_argument&) {
     return;

@@ -115,8 +115,8 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
 }
 
 std::optional<Split> Combination::split(const StepProblem& problem, int step) const {
-  return splitter_ ? std::optional(keeper_.run(*splitter_, problem, step, context_->position_m))
-                   : std::nullopt;
+  if (!splitter_) return std::nullopt;
+  return keeper_.run(*splitter_, problem, step, {context_->position_m, context_->body_group});
 }
 
 // Once a step, after all repeats: each of them begins from the step before.

@@ -55,7 +55,13 @@ struct RunOptions {
   bool skip_small_islands = false;
 
   std::vector<std::string> left_out;  // what a keyword such as `all` does not name, in words
+  std::vector<std::string> of_all;    // partitioners that stand for `all`, not named beside it
 };
+
+// Takes out of options.partitioners those that stand for `all` and that `why` gives a reason for ("which ..."); the reason
+// goes to left_out.
+void leave_out_of_all(const std::function<std::string(const Algorithm& partitioner)>& why,
+                      RunOptions& options);
 
 // Which commands have an option.
 struct CommandSet {

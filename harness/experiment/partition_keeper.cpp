@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "harness/base/stopwatch.h"
-#include "harness/experiment/problem_graph.h"
 #include "partition/repair.h"
 
 namespace cleave {
@@ -60,10 +59,10 @@ bool PartitionKeeper::drifted(const Split& split) const {
 }
 
 Split PartitionKeeper::run(const Splitter& splitter, const StepProblem& problem, int step,
-                           std::span<const double> position_m) const {
+                           const KnownBodies& known) const {
   Split split;
   Stopwatch watch;
-  split.graph = body_graph_of(problem, step, position_m);
+  split.graph = body_graph_of(problem, step, known);
   split.graph_ms = watch.lap_ms();
   double thrown_away_ms = 0;
   if (!is_due(split.graph)) {

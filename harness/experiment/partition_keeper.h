@@ -16,8 +16,9 @@
 #pragma once
 
 #include <optional>
-#include <span>
+#include <vector>
 
+#include "harness/experiment/problem_graph.h"
 #include "harness/experiment/repartition.h"
 #include "harness/experiment/splitter.h"
 
@@ -32,8 +33,7 @@ class PartitionKeeper {
 
   // As Splitter::run. Times count what ran: taking over counts as partitioning, its moves as refining, and
   // where the outcome is thrown away for a fresh one, both count as partitioning.
-  Split run(const Splitter& splitter, const StepProblem& problem, int step,
-            std::span<const double> position_m) const;
+  Split run(const Splitter& splitter, const StepProblem& problem, int step, const KnownBodies& known) const;
 
   // What run gave for the step at hand becomes the step before.
   void remember(const Splitter& splitter, const Split& split);

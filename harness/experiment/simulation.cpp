@@ -60,7 +60,12 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
     common.t_extract_ms = watch.lap_ms();
 
     // Converged bounds are found by solving, with ODE's own solvers too.
-    context_ = {&world, contacts, options_.extract.erp, options_.extract.cfm, known_positions(world)};
+    context_ = {&world,
+                contacts,
+                options_.extract.erp,
+                options_.extract.cfm,
+                known_positions(world),
+                world.body_groups()};
     watch.lap_ms();
     predict_bounds(problem, advancing, step);
     common.t_predict_ms = watch.lap_ms();

@@ -6,7 +6,6 @@
 #include <string_view>
 
 #include "harness/base/stopwatch.h"
-#include "harness/experiment/problem_graph.h"
 #include "harness/experiment/small_islands.h"
 #include "partition/registry.h"
 
@@ -81,11 +80,10 @@ void Splitter::run_recursion(Split& split) const {
   split.before = nest(split.graph, false, untimed_ms).leaves;
 }
 
-Split Splitter::run(const StepProblem& problem, std::optional<int> step,
-                    std::span<const double> position_m) const {
+Split Splitter::run(const StepProblem& problem, std::optional<int> step, const KnownBodies& known) const {
   Split split;
   Stopwatch watch;
-  split.graph = body_graph_of(problem, step, position_m);
+  split.graph = body_graph_of(problem, step, known);
   split.graph_ms = watch.lap_ms();
   run(split);
   return split;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/base/algorithm.h"
+#include "harness/experiment/problem_graph.h"
 #include "partition/body_graph.h"
 #include "partition/nested.h"
 #include "partition/partition.h"
@@ -49,10 +50,9 @@ class Splitter {
   // SetSplitter.
   explicit Splitter(const SplitSetup& setup);
 
-  // step: which one of its run the problem is. position_m: (n, 3) centres of the bodies, or empty. Throws
-  // CannotSplit where the partitioner does.
+  // step: which one of its run the problem is. Throws CannotSplit where the partitioner does.
   Split run(const StepProblem& problem, std::optional<int> step = std::nullopt,
-            std::span<const double> position_m = {}) const;
+            const KnownBodies& known = {}) const;
 
   // The same of a graph that is there already.
   void run(Split& split) const;

@@ -76,7 +76,9 @@ std::vector<std::string> variants_of(const std::string& partitioner) {
 std::vector<Pair> all_pairs() {
   std::vector<Pair> pairs;
   for (const PartitionerEntry& entry : partitioners()) {
-    if (!entry.unavailable.empty() || std::string_view(entry.name) == "file") continue;
+    if (!entry.unavailable.empty() || std::string_view(entry.name) == "file" ||
+        std::string_view(entry.name) == "semantic")
+      continue;
     for (const std::string& parameters : variants_of(entry.name)) {
       for (const RefinerEntry& refiner : refiners())
         if (entry.of_paper || std::string_view(refiner.name) == "none")
@@ -146,7 +148,8 @@ std::vector<NamedGraph> synthetic_piles() {
 
 NamedGraph read_graph(const std::string& path) {
   const ProblemFile file = read_problem_file(path);
-  return {std::filesystem::path(path).stem().string(), body_graph_of(file.problem, file.step, file.position)};
+  return {std::filesystem::path(path).stem().string(),
+          body_graph_of(file.problem, file.step, {.position_m = file.position})};
 }
 
 int run(int argc, char** argv) {

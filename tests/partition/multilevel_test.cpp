@@ -59,7 +59,8 @@ TEST(Coarsening, keeps_bodies_and_cuts) {
     const int most = random.integer(2, 5);
     std::vector<int> coarse_of_node;
     LevelGraph coarse;
-    const int nodes = coarsening.match(fine, most, random.integer(0, fine.node_count() - 1), coarse_of_node);
+    const int nodes =
+        coarsening.match(fine, most, random.integer(0, std::max(fine.node_count(), 1) - 1), coarse_of_node);
     coarsening.contract(fine, coarse_of_node, nodes, coarse);
     ASSERT_EQ(coarse.node_count(), nodes);
     EXPECT_EQ(coarse.body_count(), fine.body_count());
