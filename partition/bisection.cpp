@@ -12,6 +12,10 @@ constexpr int kLevels = 40;     // each has at most nine tenths of the nodes of 
 constexpr int kMostLooks = 20;  // at nodes too large to be moved
 constexpr double kTooFlat = 0.9;
 
+int any_node(const LevelGraph& graph, Dice& dice) {
+  return static_cast<int>(dice.below(static_cast<std::uint64_t>(graph.node_count())));
+}
+
 }  // namespace
 
 long Bisection::above() const {
@@ -23,14 +27,14 @@ bool Bisection::is_allowed(int node_bodies, int from) const {
   return after <= 0 || after < filled_[from] - most_[from];
 }
 
-int Bisection::coarsen(const LevelGraph& graph) {
+int Bisection::coarsen(const LevelGraph& graph, Dice& dice) {
   levels_.resize(kLevels);
   coarse_of_node_.resize(kLevels);
   const int most_joined = std::max(1, 3 * graph.body_count() / (2 * options_.coarse_nodes));
   for (int k = 0;; ++k) {
     const LevelGraph& finer = k == 0 ? graph : levels_[k];
     if (finer.node_count() <= options_.coarse_nodes || k + 1 == kLevels) return k;
-    const int nodes = coarsening_.match(finer, most_joined, coarse_of_node_[k]);
+    const int nodes = coarsening_.match(finer, most_joined, any_node(finer, dice), coarse_of_node_[k]);
     if (nodes > kTooFlat * finer.node_count()) return k;
     coarsening_.contract(finer, coarse_of_node_[k], nodes, levels_[k + 1]);
   }
@@ -39,7 +43,7 @@ int Bisection::coarsen(const LevelGraph& graph) {
 long Bisection::run(const LevelGraph& graph, int wanted, std::array<int, 2> most, Dice& dice,
                     std::vector<char>& side) {
   most_ = most;
-  const int coarsest = coarsen(graph);
+  const int coarsest = coarsen(graph, dice);
   long cut = start(coarsest == 0 ? graph : levels_[coarsest], wanted, dice, side);
   for (int k = coarsest - 1; k >= 0; --k) {
     finer_.resize(coarse_of_node_[k].size());
@@ -51,10 +55,9 @@ long Bisection::run(const LevelGraph& graph, int wanted, std::array<int, 2> most
 }
 
 long Bisection::start(const LevelGraph& graph, int wanted, Dice& dice, std::vector<char>& side) {
-  const int nodes = graph.node_count();
   Moment least;
   for (int k = 0; k < options_.growths; ++k) {
-    const int any = static_cast<int>(dice.below(static_cast<std::uint64_t>(nodes)));
+    const int any = any_node(graph, dice);
     grow(graph, wanted, k % 2 == 0 ? farthest(graph, farthest(graph, any)) : any, trial_);
     const Moment found = refine(graph, trial_);
     if (k > 0 && !(found < least)) continue;
@@ -114,7 +117,7 @@ void Bisection::grow(const LevelGraph& graph, int wanted, int seed, std::vector<
   }
 }
 
-// Gains of all nodes, and into the buckets those at the cut, or all where bodies are above the bounds.
+// Gains of all nodes, and into the buckets, which are empty before, those at the cut, or all where bodies are above the bounds.
 Bisection::Moment Bisection::take(const LevelGraph& graph, const std::vector<char>& side) {
   const int nodes = graph.node_count();
   filled_ = {};
@@ -139,7 +142,7 @@ Bisection::Moment Bisection::take(const LevelGraph& graph, const std::vector<cha
     if (outside > 0 || all) queue_.push_back(node);
   }
   for (int s = 0; s < 2; ++s) {
-    bucket_[s].assign(2 * offset_ + 1, -1);
+    bucket_[s].resize(std::max(bucket_[s].size(), 2 * static_cast<std::size_t>(offset_) + 1), -1);
     top_[s] = -1;
   }
   for (const int node : queue_) insert(node, side[node]);
@@ -233,6 +236,8 @@ Bisection::Moment Bisection::refine(const LevelGraph& graph, std::vector<char>& 
   Moment now = take(graph, side);
   for (int k = 0; k < options_.most_passes && pass(graph, side, now); ++k) {
   }
+  for (int node = 0; node < graph.node_count(); ++node)  // the buckets are left empty
+    if (state_[node] == kIn) bucket_[static_cast<int>(side[node])][gain_[node] + offset_] = -1;
   return now;
 }
 

@@ -37,7 +37,7 @@ class Bisection {
     }
   };
 
-  int coarsen(const LevelGraph& graph);
+  int coarsen(const LevelGraph& graph, Dice& dice);
   void grow(const LevelGraph& graph, int wanted, int seed, std::vector<char>& side);
   long start(const LevelGraph& graph, int wanted, Dice& dice, std::vector<char>& side);
   Moment refine(const LevelGraph& graph, std::vector<char>& side);
@@ -59,7 +59,7 @@ class Bisection {
   std::vector<std::vector<int>> coarse_of_node_;  // of each level
   std::vector<int> gain_, queue_, moved_;
   std::vector<char> state_, trial_, finer_;
-  // Nodes by side and gain, in doubly linked lists.
+  // Nodes by side and gain, in doubly linked lists; -1 outside of refine().
   std::array<std::vector<int>, 2> bucket_;
   std::vector<int> next_, previous_;
   std::array<int, 2> top_{};

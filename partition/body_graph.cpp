@@ -113,6 +113,12 @@ BodyGraph::BodyGraph(std::span<const double> mass_kg, std::span<const Constraint
   }
 }
 
+void BodyGraph::set_groups(std::span<const int> group_of_body) {
+  if (!group_of_body.empty() && group_of_body.size() != mass_kg_.size())
+    refuse("size of group_of_body", group_of_body.size(), mass_kg_.size());
+  group_.assign(group_of_body.begin(), group_of_body.end());
+}
+
 void BodyGraph::add_body(double mass_kg, int fixed_rows) {
   mass_kg_.push_back(mass_kg);
   fixed_rows_.push_back(fixed_rows);
@@ -143,6 +149,7 @@ std::vector<BodyGraph> BodyGraph::induced(std::span<const int> set_of_body, int 
     graph.add_body(mass_kg_[i], fixed_rows_[i]);
     if (has_positions())
       for (const int axis : {0, 1, 2}) graph.position_m_.push_back(position_m(i, axis));
+    if (has_groups()) graph.group_.push_back(group(i));
   }
   return graphs;
 }

@@ -5,7 +5,8 @@
 //   pairs        always 1
 //   constraints  joints + contact points between the two bodies
 //   rows         scalar constraint rows between the two bodies
-// Static geometry is no node; constraints with it add to no degree, edge or gain. Bodies may have positions.
+// Static geometry is no node; constraints with it add to no degree, edge or gain. Bodies may have positions,
+// and be in groups that the scene names.
 #pragma once
 
 #include <optional>
@@ -51,6 +52,12 @@ class BodyGraph {
     return position_m_[3 * static_cast<std::size_t>(body) + axis];
   }
 
+  // group_of_body: (n) numbers, of which equal ones mean one group, -1 none; or empty where no groups are named. Throws
+  // std::invalid_argument for another size.
+  void set_groups(std::span<const int> group_of_body);
+  bool has_groups() const { return !group_.empty(); }
+  int group(int body) const { return group_[body]; }  // only where there are groups
+
   // Degree = number of distinct adjacent bodies.
   int degree(int body) const { return first_[body + 1] - first_[body]; }
 
@@ -82,6 +89,7 @@ class BodyGraph {
   std::vector<int> rows_;         // (2 edges)
   std::optional<int> step_;
   std::vector<double> position_m_;  // (n, 3), or empty
+  std::vector<int> group_;          // (n), or empty
 };
 
 // Connected components: the islands of the step. Returns their number and, if asked, one island id per body,

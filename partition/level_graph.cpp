@@ -7,53 +7,61 @@ namespace cleave {
 
 int LevelGraph::body_count() const { return std::accumulate(bodies.begin(), bodies.end(), 0); }
 
+void LevelGraph::resize(int nodes, std::size_t half_edges) {
+  bodies.resize(nodes);
+  first.resize(nodes + 1);
+  neighbour.resize(half_edges);
+  weight.resize(half_edges);
+}
+
 void LevelGraph::take(const BodyGraph& graph, EdgeWeight unit) {
   const int n = graph.body_count();
-  bodies.assign(n, 1);
-  first.assign(1, 0);
-  neighbour.clear();
-  weight.clear();
+  resize(n, 2 * static_cast<std::size_t>(graph.edge_count()));
+  std::ranges::fill(bodies, 1);
+  int divisor = 0, end = 0;
   for (int i = 0; i < n; ++i) {
-    for (int k = graph.first(i); k < graph.last(i); ++k) {
-      neighbour.push_back(graph.neighbour(k));
-      weight.push_back(graph.weight(k, unit));
+    first[i] = end;
+    for (int k = graph.first(i); k < graph.last(i); ++k, ++end) {
+      neighbour[end] = graph.neighbour(k);
+      weight[end] = graph.weight(k, unit);
+      if (divisor == 0 || weight[end] % divisor != 0) divisor = std::gcd(divisor, weight[end]);
     }
-    first.push_back(static_cast<int>(neighbour.size()));
   }
-  int divisor = 0;
-  for (const int w : weight) divisor = std::gcd(divisor, w);
+  first[n] = end;
+  if (divisor <= 1) return;
   for (int& w : weight) w /= divisor;
 }
 
 void LevelGraph::split(std::span<const char> side, std::array<LevelGraph, 2>& halves,
                        std::array<std::vector<int>, 2>& nodes, std::vector<int>& place) const {
   place.resize(side.size());
+  std::array<int, 2> count{};
+  for (std::size_t node = 0; node < side.size(); ++node) place[node] = count[static_cast<int>(side[node])]++;
   for (int s = 0; s < 2; ++s) {
-    nodes[s].clear();
-    halves[s].bodies.clear();
-    halves[s].first.assign(1, 0);
-    halves[s].neighbour.clear();
-    halves[s].weight.clear();
+    nodes[s].resize(count[s]);
+    halves[s].resize(count[s], neighbour.size());
   }
+  std::array<int, 2> end{};
   for (int node = 0; node < node_count(); ++node) {
-    place[node] = static_cast<int>(nodes[side[node]].size());
-    nodes[side[node]].push_back(node);
+    const int own = side[node];
+    LevelGraph& half = halves[own];
+    nodes[own][place[node]] = node;
+    half.bodies[place[node]] = bodies[node];
+    half.first[place[node]] = end[own];
+    for (int k = first[node]; k < first[node + 1]; ++k) {  // what is not kept is written over by the next
+      half.neighbour[end[own]] = place[neighbour[k]];
+      half.weight[end[own]] = weight[k];
+      end[own] += side[neighbour[k]] == own;
+    }
   }
   for (int s = 0; s < 2; ++s) {
-    LevelGraph& half = halves[s];
-    for (const int node : nodes[s]) {
-      half.bodies.push_back(bodies[node]);
-      for (int k = first[node]; k < first[node + 1]; ++k) {
-        if (side[neighbour[k]] != s) continue;
-        half.neighbour.push_back(place[neighbour[k]]);
-        half.weight.push_back(weight[k]);
-      }
-      half.first.push_back(static_cast<int>(half.neighbour.size()));
-    }
+    halves[s].first[count[s]] = end[s];
+    halves[s].neighbour.resize(end[s]);
+    halves[s].weight.resize(end[s]);
   }
 }
 
-int Coarsening::match(const LevelGraph& graph, int most_bodies, std::vector<int>& coarse_of_node) {
+int Coarsening::match(const LevelGraph& graph, int most_bodies, int begin, std::vector<int>& coarse_of_node) {
   const int n = graph.node_count();
   const auto degree = [&](int node) { return graph.first[node + 1] - graph.first[node]; };
   int most_degree = 0;
@@ -62,7 +70,8 @@ int Coarsening::match(const LevelGraph& graph, int most_bodies, std::vector<int>
   for (int node = 0; node < n; ++node) ++degree_first_[degree(node) + 1];
   std::partial_sum(degree_first_.begin(), degree_first_.end(), degree_first_.begin());
   order_.resize(n);
-  for (int node = 0; node < n; ++node) order_[degree_first_[degree(node)]++] = node;
+  for (int node = begin; node < n; ++node) order_[degree_first_[degree(node)]++] = node;
+  for (int node = 0; node < begin; ++node) order_[degree_first_[degree(node)]++] = node;
   mate_.assign(n, -1);
   for (const int node : order_) {
     if (mate_[node] >= 0) continue;

@@ -32,15 +32,19 @@ struct LevelGraph {
   // 1. place: scratch.
   void split(std::span<const char> side, std::array<LevelGraph, 2>& halves,
              std::array<std::vector<int>, 2>& nodes, std::vector<int>& place) const;
+
+ private:
+  void resize(int nodes, std::size_t half_edges);
 };
 
 // Joins nodes of a graph; keeps its memory.
 class Coarsening {
  public:
-  // Heavy-edge matching (Karypis and Kumar 1998, section 3.1): each node in turn, thinly connected ones first, is joined with
+  // Heavy-edge matching (Karypis and Kumar 1998, section 3.1): each node in turn, thinly connected ones first and among equals from node
+  // `begin` on, around to the one before it, is joined with
   // the free neighbour of heaviest edge, ties to the one of fewer bodies, then to the lowest, if both have at most most_bodies
   // together. Fills coarse_of_node (nodes), numbered by the lowest node of each pair; returns how many there are.
-  int match(const LevelGraph& graph, int most_bodies, std::vector<int>& coarse_of_node);
+  int match(const LevelGraph& graph, int most_bodies, int begin, std::vector<int>& coarse_of_node);
 
   // The graph of nodes joined by pairs, as match() numbers them.
   void contract(const LevelGraph& graph, std::span<const int> coarse_of_node, int coarse_nodes,

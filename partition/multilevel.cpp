@@ -6,8 +6,9 @@
 // between all parts as in `fm`. Bounds: a part has at most B = floor((1 + max-growth) max-bodies + 1e-9) bodies; a set that is
 // still to be split L = ceil(log2 k) times lends its two sides one L-th of the room that its parts have up to B.
 //
-// effort=fast joins bodies twice before the recursion, to at most four, and splits what is left; effort=best splits bodies
-// and tries more starts. The dice choose the nodes that growing starts from.
+// effort=fast joins bodies three times before the recursion, to at most six, and splits what is left. effort=best splits
+// bodies, tries more starts, lends up to half of what is left of the room beyond that L-th, as the dice fall, and moves
+// bodies as in `fm-hill` at the end. The dice also choose the nodes that matching and growing begin with.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -28,21 +29,30 @@ namespace {
 
 struct Effort {
   const char* name;
-  int joinings;  // of bodies, before the recursion
+  int joinings;         // of bodies, before the recursion
+  double more_lending;  // share of the room beyond one L-th
   BisectionOptions bisection;
+  const char* last;  // refiner of all parts at the end
 };
 
-constexpr int kMostJoined = 4;
+constexpr int kMostJoined = 6;
 constexpr Effort kEfforts[] = {
-    {"fast", 2, {.coarse_nodes = 30, .growths = 1, .patience = 5, .most_passes = 2}},
-    {"best", 0, {.coarse_nodes = 24, .growths = 4, .patience = 16, .most_passes = 4}},
+    {"fast", 3, 0, {.coarse_nodes = 30, .growths = 1, .patience = 5, .most_passes = 1}, "fm"},
+    {"best",
+     0,
+     0.5,
+     {.coarse_nodes = 24, .growths = 3, .patience = 16, .most_passes = 4},
+     "fm-hill@patience=40"},
 };
 
 // Parts of the nodes of a graph.
 class Recursion {
  public:
-  Recursion(const BisectionOptions& options, int most_bodies, std::uint64_t seed)
-      : bisection_(options), most_bodies_(most_bodies), dice_(seed) {}
+  Recursion(const Effort& effort, int most_bodies, Dice& dice)
+      : bisection_(effort.bisection),
+        more_lending_(effort.more_lending),
+        most_bodies_(most_bodies),
+        dice_(dice) {}
 
   Partition run(const LevelGraph& graph, int parts) {
     partition_.part_of_body.resize(graph.node_count());
@@ -81,7 +91,7 @@ class Recursion {
     const int bodies = graph.body_count();
     const std::array<int, 2> of_side{(parts + 1) / 2, parts / 2};
     const double each = static_cast<double>(bodies) / parts;
-    const double lent = (most_bodies_ - each) / std::bit_width(static_cast<unsigned>(parts - 1));
+    const double lent = (most_bodies_ - each) * lent_share(parts);
     std::array<int, 2> most{};
     for (int s = 0; s < 2; ++s) {
       most[s] = static_cast<int>(std::ceil(of_side[s] * (each + lent) - 1e-9));
@@ -90,9 +100,16 @@ class Recursion {
     bisection_.run(graph, static_cast<int>(std::lround(of_side[0] * each)), most, dice_, side);
   }
 
+  double lent_share(int parts) {
+    const double least = 1.0 / std::bit_width(static_cast<unsigned>(parts - 1));
+    if (more_lending_ == 0) return least;
+    return least + more_lending_ * (1 - least) * static_cast<double>(dice_.below(1000)) / 1000;
+  }
+
   Bisection bisection_;
+  const double more_lending_;
   const int most_bodies_;
-  Dice dice_;
+  Dice& dice_;
   std::deque<Depth> depths_;
   std::vector<int> place_;
   Partition partition_;
@@ -134,7 +151,7 @@ class Multilevel final : public Partitioner {
         seed_(settings.integer("partition-seed")),
         effort_(*std::ranges::find(kEfforts, settings.text("effort"),
                                    [](const Effort& e) { return std::string(e.name); })),
-        last_(make_refiner("fm@max-growth=" + settings.text("max-growth") +
+        last_(make_refiner(effort_.last + std::string("@max-growth=") + settings.text("max-growth") +
                            "@edge-weight=" + settings.text("edge-weight"))) {}
 
  private:
@@ -144,13 +161,14 @@ class Multilevel final : public Partitioner {
     const int most_bodies = std::min(n, most_grown_bodies(max_bodies_, max_growth_));
     std::vector<LevelGraph> levels(effort_.joinings + 1);
     std::vector<std::vector<int>> coarse_of_node(effort_.joinings);
+    Dice dice(seed_);
     Coarsening coarsening;
     levels[0].take(graph, unit_);
     for (int k = 0; k < effort_.joinings; ++k) {
-      const int nodes = coarsening.match(levels[k], std::min(kMostJoined, most_bodies), coarse_of_node[k]);
+      const int nodes = coarsening.match(levels[k], std::min(kMostJoined, most_bodies), 0, coarse_of_node[k]);
       coarsening.contract(levels[k], coarse_of_node[k], nodes, levels[k + 1]);
     }
-    Recursion recursion(effort_.bisection, most_bodies, static_cast<std::uint64_t>(seed_));
+    Recursion recursion(effort_, most_bodies, dice);
     Partition partition = recursion.run(levels.back(), wanted_parts(n, max_bodies_));
     for (int k = effort_.joinings - 1; k >= 0; --k) {
       std::vector<int> finer(coarse_of_node[k].size());

@@ -98,6 +98,15 @@ const Parameter& max_growth() {
   return parameter;
 }
 
+const Parameter& merge_small() {
+  static const Parameter parameter{.name = "merge-small",
+                                   .kind = Kind::flag,
+                                   .default_value = "false",
+                                   .help = "fold small parts that growing leaves over into their neighbours",
+                                   .source = "partition/README.md"};
+  return parameter;
+}
+
 const Parameter& partition_seed() {
   static const Parameter parameter{.name = "partition-seed",
                                    .kind = Kind::integer,

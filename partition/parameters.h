@@ -23,6 +23,7 @@ const Parameter& as_printed();    // the paper to the letter
 const Parameter& tau_mr();
 const Parameter& tau_mix();
 const Parameter& max_growth();
+const Parameter& merge_small();
 const Parameter& partition_seed();  // of the dice, for partitioners that draw
 const Parameter& trials();          // of which the best counts
 const Parameter& ufactor();

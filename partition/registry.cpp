@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "harness/base/names.h"
+#include "partition/merge_small.h"
 #include "partition/parameters.h"
 
 namespace cleave {
@@ -17,6 +19,7 @@ std::unique_ptr<Partitioner> make_mix(const Settings& settings);
 std::unique_ptr<Partitioner> make_multilevel(const Settings& settings);
 std::unique_ptr<Partitioner> make_single(const Settings& settings);
 std::unique_ptr<Partitioner> make_random(const Settings& settings);
+std::unique_ptr<Partitioner> make_semantic(const Settings& settings);
 std::unique_ptr<Partitioner> make_geometric(const Settings& settings);
 std::unique_ptr<Partitioner> make_karger(const Settings& settings);
 std::unique_ptr<Partitioner> make_auto(const Settings& settings);
@@ -87,26 +90,32 @@ Algorithm read_row(std::span<const Entry> table, const std::string& option, cons
 
 std::span<const PartitionerEntry> partitioners() {
   static const PartitionerEntry table[] = {
-      {{"mindp", "grow by the body of least degree", kGrowing, {max_bodies(), degree(), degree_scope()}},
+      {{"mindp",
+        "grow by the body of least degree",
+        kGrowing,
+        {max_bodies(), degree(), degree_scope(), merge_small()}},
        kGrown,
        true,
        make_mindp},
       {{"maxdp",
         "grow by the body of greatest degree",
         kGrowing,
-        {max_bodies(), degree(), degree_scope(), as_printed()}},
+        {max_bodies(), degree(), degree_scope(), as_printed(), merge_small()}},
        kGrown,
        true,
        make_maxdp},
-      {{"bfs", "grow breadth first", kGrowing, {max_bodies()}}, kGrown, true, make_bfs},
-      {{"mr", "grow by bodies whose mass ratio stays below tau-mr", kGrowing, {max_bodies(), tau_mr()}},
+      {{"bfs", "grow breadth first", kGrowing, {max_bodies(), merge_small()}}, kGrown, true, make_bfs},
+      {{"mr",
+        "grow by bodies whose mass ratio stays below tau-mr",
+        kGrowing,
+        {max_bodies(), tau_mr(), merge_small()}},
        kClosedEarly,
        true,
        make_mass_ratio},
       {{"mix",
         "grow by least degree, then by greatest edge weight into the part",
         "Liu & Andrews 2022, Algorithm 1",
-        {max_bodies(), tau_mix(), edge_weight(), degree(), degree_scope(), as_printed()}},
+        {max_bodies(), tau_mix(), edge_weight(), degree(), degree_scope(), as_printed(), merge_small()}},
        kGrown,
        true,
        make_mix},
@@ -158,6 +167,20 @@ std::span<const PartitionerEntry> partitioners() {
        {.at_most_max_bodies = true},
        false,
        make_geometric},
+      {{"semantic",
+        "the groups of bodies that the scene names",
+        "Peiret et al. 2019",
+        {max_bodies(),
+         {.name = "split",
+          .kind = Parameter::Kind::word,
+          .default_value = "whole",
+          .words = {"whole", "chunks"},
+          .help = "one part a group, or groups cut into runs of at most max-bodies bodies",
+          .source = "partition/README.md"}}},
+       {},
+       false,
+       make_semantic,
+       true},
       {{"karger",
         "contract edges at random, best of several trials",
         "Karger 1993; Karger & Stein 1996",
@@ -261,6 +284,10 @@ std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm) {
   if (max_bodies && settings.has("max-growth"))
     grown_bodies = most_grown_bodies(*max_bodies, settings.number("max-growth"));
   made->promise(entry.promise, max_bodies, grown_bodies);
+  if (!settings.has("merge-small") || !settings.flag("merge-small")) return made;
+  made = merge_small(std::move(made), *max_bodies);
+  made->promise({.contiguous = entry.promise.contiguous, .at_most_grown_bodies = true}, max_bodies,
+                most_merged_bodies(*max_bodies));
   return made;
 }
 

@@ -1,5 +1,6 @@
 #include "scenarios/file_scene.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "scenarios/file_builder.h"
@@ -51,8 +52,7 @@ void apply(const Change& change, dBodyID body) {
 
 class FileScene : public Scene {
  public:
-  SceneContent build(dWorldID world, dSpaceID space, const Settings& settings,
-                     std::uint64_t seed) override {
+  SceneContent build(dWorldID world, dSpaceID space, const Settings& settings, std::uint64_t seed) override {
     const Description& scene = description(settings);
     SceneRandom random(seed);
     SceneContent content = scene_file::build(scene, world, space, random, hulls_);
@@ -73,7 +73,13 @@ class FileScene : public Scene {
 }  // namespace
 
 std::vector<Parameter> file_scene_parameters() {
-  return {{.name = "path", .kind = Parameter::Kind::path, .help = "scene file; see scenarios/FILE_SCENES.md"}};
+  return {
+      {.name = "path", .kind = Parameter::Kind::path, .help = "scene file; see scenarios/FILE_SCENES.md"}};
+}
+
+bool file_scene_names_groups(const Settings& settings) {
+  return std::ranges::any_of(description(settings).bodies,
+                             [](const scene_file::Bodies& bodies) { return !bodies.group.empty(); });
 }
 
 std::unique_ptr<Scene> make_file_scene() { return std::make_unique<FileScene>(); }

@@ -1,15 +1,22 @@
 #include "scenarios/chain_drop.h"
+#include "scenarios/crane.h"
 #include "scenarios/file_scene.h"
 #include "scenarios/ladder_chain.h"
 #include "scenarios/ladder_free.h"
 #include "scenarios/ladder_loop.h"
 #include "scenarios/ladder_stack.h"
 #include "scenarios/log_tower.h"
+#include "scenarios/mixed_site.h"
 #include "scenarios/rock_pile.h"
 #include "scenarios/scene.h"
 #include "scenarios/silo.h"
 
 namespace cleave {
+namespace {
+
+bool always(const Settings&) { return true; }
+
+}  // namespace
 
 std::span<const SceneEntry> scenes() {
   static const SceneEntry table[] = {
@@ -28,6 +35,15 @@ std::span<const SceneEntry> scenes() {
       {{"silo", "boxes laid close in a pit as wide as they are high, nearly at rest from the start",
         "scenarios/README.md", silo_parameters()},
        make_silo},
+      {{"crane",
+        "a crane on outriggers slews a heavy load on a cable of light links (--dt 0.001 --cfm 1e-10)",
+        "Peiret et al. 2019; scenarios/README.md", crane_parameters()},
+       make_crane,
+       always},
+      {{"mixed_site", "a crane lifts a rock out from under a pile (--dt 0.001 --cfm 1e-10)",
+        "scenarios/README.md", mixed_site_parameters()},
+       make_mixed_site,
+       always},
       {{"ladder_stack", "equal boxes in a stack, their contacts reported as often as asked for",
         "scenarios/README.md", ladder_stack_parameters()},
        make_ladder_stack},
@@ -50,7 +66,8 @@ std::span<const SceneEntry> scenes() {
        make_ladder_free},
       {{"file", "bodies, joints and events that a file describes", "scenarios/FILE_SCENES.md",
         file_scene_parameters(), file_scene_content_id},
-       make_file_scene},
+       make_file_scene,
+       file_scene_names_groups},
   };
   return table;
 }

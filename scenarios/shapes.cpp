@@ -178,19 +178,21 @@ void SceneBuilder::add_ball_joint(dBodyID a, dBodyID b, const Vector& anchor_m) 
   content_.joints.push_back(joint);
 }
 
-void SceneBuilder::add_hinge_joint(dBodyID a, dBodyID b, const Vector& anchor_m, const Vector& axis) {
+dJointID SceneBuilder::add_hinge_joint(dBodyID a, dBodyID b, const Vector& anchor_m, const Vector& axis) {
   const dJointID joint = dJointCreateHinge(world_, nullptr);
   dJointAttach(joint, a, b);
   dJointSetHingeAnchor(joint, anchor_m[0], anchor_m[1], anchor_m[2]);
   dJointSetHingeAxis(joint, axis[0], axis[1], axis[2]);
   content_.joints.push_back(joint);
+  return joint;
 }
 
-void SceneBuilder::add_slider_joint(dBodyID a, dBodyID b, const Vector& axis) {
+dJointID SceneBuilder::add_slider_joint(dBodyID a, dBodyID b, const Vector& axis) {
   const dJointID joint = dJointCreateSlider(world_, nullptr);
   dJointAttach(joint, a, b);
   dJointSetSliderAxis(joint, axis[0], axis[1], axis[2]);
   content_.joints.push_back(joint);
+  return joint;
 }
 
 void SceneBuilder::add_fixed_joint(dBodyID a, dBodyID b) {

@@ -68,14 +68,16 @@ class SceneBuilder {
   dBodyID add_convex(const Pose& pose, double mass_kg, const ConvexHull& hull);
   // b: nullptr for the static environment. axis: any length but zero.
   void add_ball_joint(dBodyID a, dBodyID b, const std::array<double, 3>& anchor_m);
-  void add_hinge_joint(dBodyID a, dBodyID b, const std::array<double, 3>& anchor_m,
-                       const std::array<double, 3>& axis);
-  void add_slider_joint(dBodyID a, dBodyID b, const std::array<double, 3>& axis);
+  dJointID add_hinge_joint(dBodyID a, dBodyID b, const std::array<double, 3>& anchor_m,
+                           const std::array<double, 3>& axis);
+  dJointID add_slider_joint(dBodyID a, dBodyID b, const std::array<double, 3>& axis);
   void add_fixed_joint(dBodyID a, dBodyID b);
   // Static: everything with normal . x < offset_m is solid. normal: unit.
   void add_plane(const std::array<double, 3>& normal, double offset_m);
   // A floor at z = 0 and four walls without end at x, y = +-half_width_m.
   void add_square_pit(double half_width_m);
+
+  int body_count() const { return static_cast<int>(content_.bodies.size()); }
 
   SceneContent take() { return std::move(content_); }
 

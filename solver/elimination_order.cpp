@@ -3,13 +3,13 @@
 #include <camd.h>
 #include <metis.h>
 
-#include <cstdlib>
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "harness/base/metis_lock.h"
+#include "harness/base/room.h"
 
 namespace cleave {
 
@@ -19,12 +19,6 @@ namespace {
 
 constexpr int kDissectionParts = 2;            // the least that METIS_NodeNDP takes; it goes on below them
 constexpr std::size_t kDissectionBytes = 100;  // more than it takes, per node and entry of the adjacency
-
-void require_room(std::size_t bytes) {
-  void* const room = std::malloc(bytes);
-  if (room == nullptr) throw std::bad_alloc();
-  std::free(room);
-}
 
 }  // namespace
 

@@ -71,6 +71,7 @@ ProblemFile problem_file_of(const ObservedStep& step, const RunOptions& options)
   file.erp = options.extract.erp;
   file.cfm = options.extract.cfm;
   file.position = world.positions_m();
+  if (!step.context.body_group.empty()) file.body_group = step.context.body_group;
   for (int i = 0; i < world.body_count(); ++i) {
     const BodyState state = world.state(i);
     file.orientation.insert(file.orientation.end(), state.orientation.begin(), state.orientation.end());

@@ -52,20 +52,37 @@ std::vector<OptionValue> values_of(const ReplayOptions& options) {
   return values;
 }
 
-// Before anything is created. A session is of one simulation's steps, one after the other.
-void check_files(const ReplayOptions& options) {
+// The option for which files must be one simulation's steps, one after the other; empty: they may be any.
+std::string asks_for_series(const RunOptions& options) {
+  if (options.session) return "--session";
+  return options.repartition.kind == Repartition::Kind::always ? ""
+                                                               : "--repartition " + options.repartition.text;
+}
+
+// Before anything is created. What `all` stands for splits every file.
+void check_files(ReplayOptions& options) {
+  std::string without_groups;
   std::string before;
   std::tuple<std::string, std::uint64_t, int, int> last;
   for (const std::string& path : options.files) {
     const ProblemFile file = read_problem_file_aloud(path);
     const std::tuple now{file.scene, file.seed, file.problem.body_count(), file.step};
-    if (options.solve.session && !before.empty() && now != last)
-      throw std::invalid_argument("FILES: " + path + " is not the step after that of " + before +
-                                  ", which --session asks for");
+    if (const std::string option = asks_for_series(options.solve);
+        !option.empty() && !before.empty() && now != last)
+      throw std::invalid_argument("FILES: " + path + " is not the step after that of " + before + ", which " +
+                                  option + " asks for");
+    if (!file.body_group) without_groups = path;
     before = path;
     last = now;
     ++std::get<3>(last);
   }
+  if (without_groups.empty()) return;
+  const auto why = [&](const Algorithm& partitioner) {
+    return needs_groups(partitioner)
+               ? "which splits by groups of bodies, and " + without_groups + " names none"
+               : std::string();
+  };
+  leave_out_of_all(why, options.solve);
 }
 
 // The files of --write-solutions must not meet each other or replace what is replayed.
@@ -133,7 +150,8 @@ void store(const Combination& combination, const StepRecord& row, const Outcome&
   if (outcome.part_of_body.empty()) return;
   SplitSetup setup = combination.split_setup();
   setup.choice = outcome.choice;
-  file.partitions[label] = stored_partition(setup, outcome.part_of_body, outcome.parent_of_part);
+  file.partitions[label] = stored_partition(setup, outcome.part_of_body, outcome.parent_of_part,
+                                            outcome.origin);
 }
 
 class Replay {
@@ -168,6 +186,7 @@ class Replay {
     std::vector<double> recorded = file.problem.warm_impulse;
     if (options_.cold) std::ranges::fill(file.problem.warm_impulse, 0.0);
     context_.position_m = known_positions(file);
+    context_.body_group = known_groups(file);
     const std::vector<Outcome> outcomes =
         measure_all(combinations_, file.problem, summary_.measured_steps, rows);
     if (options_.write_solutions) {
@@ -187,7 +206,7 @@ class Replay {
   RunSummary summary_;
 };
 
-int replay(const ReplayOptions& options, const std::vector<std::string>& argv) {
+int replay(ReplayOptions options, const std::vector<std::string>& argv) {
   if (options.files.empty()) throw std::invalid_argument("FILES: at least one problem file is required");
   check_files(options);
   if (options.write_solutions) check_names(options);

@@ -71,7 +71,8 @@ void check_outside_parts(const StoredPartition& partition, const std::string& co
   std::string error;
   if (!std::regex_match(fingerprint, form))
     error = "; fingerprint of the files = '" + fingerprint + "', allowed: 16 hexadecimal digits";
-  if (!partition.parent_of_part.empty()) error += "; a tree of parts, allowed: one level, as parts from files are";
+  if (!partition.parent_of_part.empty())
+    error += "; a tree of parts, allowed: one level, as parts from files are";
   try {
     read_stored_refiner(partition);
   } catch (const std::invalid_argument& wrong) {
@@ -85,10 +86,26 @@ void check_outside_parts(const StoredPartition& partition, const std::string& co
   list.add(found == fingerprint, subject, "part ids have the fingerprint " + found + " of their file");
 }
 
+// Parts that hang on the steps before, which no file holds, are counted only. Whether there are such.
+bool check_history(const StoredPartition& partition, const std::string& counted, const std::string& subject,
+                   CheckList& list) {
+  std::string origin, error;
+  try {
+    origin = to_string(read_origin(partition));
+  } catch (const std::invalid_argument& wrong) {
+    error = wrong.what();
+  }
+  if (origin == to_string(PartitionOrigin::fresh)) return false;
+  list.add(error.empty(), subject,
+           counted + "; " + (error.empty() ? origin + " from the step before" : error));
+  return true;
+}
+
 void check_split(const ProblemFile& file, const StoredPartition& partition, const std::string& subject,
                  CheckList& list) {
   const std::string counted =
       metrics_text(measure_partition(body_graph_of(file.problem), partition.part_of_body));
+  if (check_history(partition, counted, subject, list)) return;
   if (content_of("partitioner", algorithm_name(partition.partitioner)) != nullptr)
     return check_outside_parts(partition, counted, subject, list);
   const auto not_again = [&](const std::exception& error) {
@@ -96,7 +113,8 @@ void check_split(const ProblemFile& file, const StoredPartition& partition, cons
   };
   Split again;
   try {
-    again = Splitter(read_split_setup(partition)).run(file.problem, file.step, known_positions(file));
+    again = Splitter(read_split_setup(partition))
+                .run(file.problem, file.step, {known_positions(file), known_groups(file)});
   } catch (const std::invalid_argument& error) {
     return not_again(error);
   } catch (const CannotSplit& error) {

@@ -205,6 +205,17 @@ const SceneEntry& scene_row(const Algorithm& scene) {
   return *std::ranges::find_if(scenes(), [&](const SceneEntry& row) { return row.name == scene.name; });
 }
 
+bool names_groups(const Algorithm& scene) {
+  const auto names = scene_row(scene).names_groups;
+  return names != nullptr && names(scene.settings);
+}
+
+bool needs_groups(const Algorithm& partitioner) {
+  return std::ranges::any_of(partitioners(), [&](const PartitionerEntry& row) {
+    return row.name == partitioner.name && row.needs_groups;
+  });
+}
+
 std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, const SolveOptions& options,
                                         const StepContext& context) {
   if (std::unique_ptr<StepSolver> ode = make_ode_baseline(solver, context)) return ode;

@@ -71,6 +71,10 @@ std::string owners_of(const std::string& parameter);
 
 const SceneEntry& scene_row(const Algorithm& scene);
 
+// Whether the scene puts bodies into groups, and whether a partitioner splits by them.
+bool names_groups(const Algorithm& scene);
+bool needs_groups(const Algorithm& partitioner);
+
 // Throws std::invalid_argument for an unknown name. context: see ode_baselines.h; must outlive the solver. ODE's
 // own solvers cannot be stopped.
 std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, const SolveOptions& options,

@@ -150,6 +150,9 @@ std::string why_unable(const Algorithm& partitioner, const RunOptions& options) 
   for (const Algorithm& solver : options.solvers)
     if (arity_of(solver) && !keeps_to_bound)
       return "which keeps to no max-bodies, as " + solver.text + " needs";
+  const bool has_groups = options.scene.name.empty() || names_groups(options.scene);
+  if (needs_groups(partitioner) && !has_groups)
+    return "which splits by groups of bodies, and scene " + options.scene.name + " names none";
   return {};
 }
 
@@ -159,13 +162,9 @@ void leave_out_unable(const Given& given, RunOptions& options) {
   if (found == given.end()) return;
   const std::vector<std::string> items = split_list(found->second);
   if (std::ranges::count(items, "all") == 0) return;
-  std::erase_if(options.partitioners, [&](const Algorithm& partitioner) {
-    if (std::ranges::count(items, partitioner.text) > 0) return false;
-    const std::string why = why_unable(partitioner, options);
-    if (!why.empty())
-      options.left_out.push_back("--partitioner all leaves out " + partitioner.text + ", " + why);
-    return !why.empty();
-  });
+  for (const Algorithm& partitioner : options.partitioners)
+    if (std::ranges::count(items, partitioner.text) == 0) options.of_all.push_back(partitioner.text);
+  leave_out_of_all([&](const Algorithm& partitioner) { return why_unable(partitioner, options); }, options);
 }
 
 OptionKind option_kind(const Parameter& parameter) {
@@ -196,6 +195,17 @@ NamedAlgorithm named(const std::string& kind, const Algorithm& algorithm) {
 }
 
 }  // namespace
+
+void leave_out_of_all(const std::function<std::string(const Algorithm& partitioner)>& why,
+                      RunOptions& options) {
+  std::erase_if(options.partitioners, [&](const Algorithm& partitioner) {
+    if (std::ranges::count(options.of_all, partitioner.text) == 0) return false;
+    const std::string reason = why(partitioner);
+    if (!reason.empty())
+      options.left_out.push_back("--partitioner all leaves out " + partitioner.text + ", " + reason);
+    return !reason.empty();
+  });
+}
 
 RunOptions default_run_options() { return options_with({}); }
 

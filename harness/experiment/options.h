@@ -14,6 +14,7 @@
 
 #include "harness/base/option_value.h"
 #include "harness/experiment/algorithms.h"
+#include "harness/experiment/repartition.h"
 #include "harness/world/extract.h"
 
 namespace cleave {
@@ -36,6 +37,7 @@ struct RunOptions {
   int skip = 0;         // read by reports, not by the run
   int repeats = 3;
   bool session = false;  // solvers carry what pays from step to step; each cell is then solved once
+  Repartition repartition;
   int threads = 1;
   double memory_limit_gb = std::numeric_limits<double>::quiet_NaN();             // NaN: what the machine has
   std::uint64_t memory_limit_bytes = std::numeric_limits<std::uint64_t>::max();  // what that is
@@ -53,7 +55,13 @@ struct RunOptions {
   bool skip_small_islands = false;
 
   std::vector<std::string> left_out;  // what a keyword such as `all` does not name, in words
+  std::vector<std::string> of_all;    // partitioners that stand for `all`, not named beside it
 };
+
+// Takes out of options.partitioners those that stand for `all` and that `why` gives a reason for ("which ..."); the reason
+// goes to left_out.
+void leave_out_of_all(const std::function<std::string(const Algorithm& partitioner)>& why,
+                      RunOptions& options);
 
 // Which commands have an option.
 struct CommandSet {

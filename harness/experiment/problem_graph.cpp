@@ -4,8 +4,7 @@
 
 namespace cleave {
 
-BodyGraph body_graph_of(const StepProblem& problem, std::optional<int> step,
-                        std::span<const double> position_m) {
+BodyGraph body_graph_of(const StepProblem& problem, std::optional<int> step, const KnownBodies& known) {
   std::vector<double> mass_kg(problem.body_count());
   for (int i = 0; i < problem.body_count(); ++i) mass_kg[i] = problem.mass[36 * i];
 
@@ -15,7 +14,9 @@ BodyGraph body_graph_of(const StepProblem& problem, std::optional<int> step,
       links.push_back({problem.row_body[2 * r], problem.row_body[2 * r + 1], 0});
     ++links.back().rows;
   }
-  return BodyGraph(mass_kg, links, step, position_m);
+  BodyGraph graph(mass_kg, links, step, known.position_m);
+  graph.set_groups(known.group);
+  return graph;
 }
 
 }  // namespace cleave

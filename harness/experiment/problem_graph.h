@@ -1,5 +1,5 @@
-// The body graph of a step problem, from its arrays alone and the positions that its file holds too, so that it
-// is the same for a live and for a replayed step.
+// The body graph of a step problem, from its arrays alone and what its file holds too, so that it is the same for a live
+// and for a replayed step.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,16 @@
 
 namespace cleave {
 
+// What is known of the bodies besides the problem; each empty where nobody knows.
+struct KnownBodies {
+  std::span<const double> position_m = {};  // (n, 3) centres
+  std::span<const int> group = {};          // (n) as BodyGraph::set_groups wants it
+};
+
 // One link per constraint (a joint or one contact point: adjacent rows of equal row_constraint), with its
 // number of rows. A body's mass is the first diagonal entry of its mass block. step: which one of its run the
-// problem is. position_m: (n, 3) centres of the bodies, or empty.
+// problem is.
 BodyGraph body_graph_of(const StepProblem& problem, std::optional<int> step = std::nullopt,
-                        std::span<const double> position_m = {});
+                        const KnownBodies& known = {});
 
 }  // namespace cleave

@@ -21,7 +21,8 @@ bool is_ordinary(hid_t type) {
   if (H5Tget_class(type) == H5T_FLOAT)
     return H5Tequal(type, H5T_IEEE_F64LE) > 0 || H5Tequal(type, H5T_IEEE_F32LE) > 0 ||
            H5Tequal(type, H5T_IEEE_F64BE) > 0 || H5Tequal(type, H5T_IEEE_F32BE) > 0;
-  if (H5Tget_class(type) == H5T_INTEGER) return H5Tget_precision(type) == 8 * H5Tget_size(type);
+  if (H5Tget_class(type) == H5T_INTEGER)
+    return H5Tget_precision(type) == 8 * H5Tget_size(type) && H5Tget_offset(type) == 0;
   if (H5Tget_class(type) == H5T_STRING) {
     const H5T_str_t padding = H5Tget_strpad(type);
     const H5T_cset_t characters = H5Tget_cset(type);
@@ -239,7 +240,7 @@ void Hdf5Reader::attribute(const std::string& name, double& value) const {
   const Hdf5Handle attribute = open_attribute(name);
   const Hdf5Handle type = type_of_attribute(attribute);
   const H5T_class_t type_class = H5Tget_class(type.id());
-  if (type_class != H5T_FLOAT && type_class != H5T_INTEGER)
+  if ((type_class != H5T_FLOAT && type_class != H5T_INTEGER) || !is_ordinary(type.id()))
     fail("type of attribute " + full(name) + " = " + type_text(type.id()) + ", allowed: a number");
   read_attribute(attribute, name, H5T_NATIVE_DOUBLE, &value);
 }
@@ -247,7 +248,7 @@ void Hdf5Reader::attribute(const std::string& name, double& value) const {
 long long Hdf5Reader::integer(const std::string& name) const {
   const Hdf5Handle attribute = open_attribute(name);
   const Hdf5Handle type = type_of_attribute(attribute);
-  if (H5Tget_class(type.id()) != H5T_INTEGER)
+  if (H5Tget_class(type.id()) != H5T_INTEGER || !is_ordinary(type.id()))
     fail("type of attribute " + full(name) + " = " + type_text(type.id()) + ", allowed: an integer");
   long long value = 0;
   read_attribute(attribute, name, H5T_NATIVE_LLONG, &value);

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "harness/base/room.h"
+
 namespace cleave {
 namespace {
 
@@ -20,6 +22,7 @@ void write_chunks_at_once(const Hdf5Handle& access) {
 
 Hdf5SeriesFile::Hdf5SeriesFile(const std::filesystem::path& path) : file_(path.string()) {
   silence_hdf5();
+  require_room(kRoomToOpenHdf5);
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   // The mode needs the format of HDF5 1.10; a later one would shut out its readers.
   H5Pset_libver_bounds(access.id(), H5F_LIBVER_V110, H5F_LIBVER_V110);

@@ -53,6 +53,9 @@ inline void silence_hdf5() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
+// What there has to be before a file is made: several times what the library takes, which crashes where it finds less.
+inline constexpr std::size_t kRoomToOpenHdf5 = std::size_t{4} << 20;
+
 // "(10, 12)"
 inline std::string hdf5_shape_text(std::span<const std::size_t> shape) {
   std::string text = "(";

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "harness/base/room.h"
 #include "harness/files/whole_file.h"
 
 namespace cleave {
@@ -17,6 +18,7 @@ constexpr std::size_t kMemoryStep = std::size_t{1} << 20;  // by which the file 
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& path) : file_(path.string()) {
   silence_hdf5();
+  require_room(kRoomToOpenHdf5);
   const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   const bool on_disk = false;
   errno = 0;

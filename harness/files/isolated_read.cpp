@@ -15,6 +15,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "harness/base/room.h"
 #include "harness/files/write_all.h"
 
 namespace cleave {
@@ -66,12 +67,6 @@ void enter_child(const ReadLimits& limits) {
   for (const int printed : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, printed);
 }
 
-bool has_room(const ReadLimits& limits) {
-  void* const room = std::malloc(limits.memory_bytes / kPartOfRoom);
-  std::free(room);
-  return room != nullptr;
-}
-
 // What is sent ends the child: no exit handler of the parent runs in it.
 [[noreturn]] void serve(int pipe, const ReadLimits& limits, const std::function<std::string()>& read) {
   char kind = kValue;
@@ -79,7 +74,7 @@ bool has_room(const ReadLimits& limits) {
   try {
     bytes = read();
   } catch (const std::exception& error) {
-    kind = has_room(limits) ? kError : kErrorWithoutMemory;
+    kind = has_room(limits.memory_bytes / kPartOfRoom) ? kError : kErrorWithoutMemory;
     bytes = error.what();
   }
   const bool sent = write_all(pipe, {&kind, 1}) && write_all(pipe, bytes);

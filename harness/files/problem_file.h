@@ -79,6 +79,9 @@ void write_problem_file(const std::filesystem::path& path, const ProblemFile& fi
 // to leave them out.
 std::vector<double> known_positions(const ProblemFile& file);
 
+// (n) groups of bodies, or empty where the file names none.
+std::vector<int> known_groups(const ProblemFile& file);
+
 // "rock_pile_step000100.h5": what `record` calls the problem of a step.
 std::string problem_file_name(const std::string& scene, int step);
 

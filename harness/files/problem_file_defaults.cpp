@@ -67,4 +67,8 @@ std::vector<double> known_positions(const ProblemFile& file) {
   return are_known ? file.position : std::vector<double>();
 }
 
+std::vector<int> known_groups(const ProblemFile& file) {
+  return file.body_group.value_or(std::vector<int>());
+}
+
 }  // namespace cleave

@@ -1,5 +1,6 @@
 #include "harness/world/body_terms.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
@@ -77,6 +78,15 @@ void append_body_terms(const OdeWorld& world, double h_s, StepProblem& problem) 
     require_plain_body(bodies[i], i);
     append_body(bodies[i], to_vector(gravity), h_s, problem);
   }
+}
+
+void add_force(int body, std::span<const double, 6> force, StepProblem& problem) {
+  using Block = Eigen::Matrix<double, 6, 6>;
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  const Eigen::Map<const Block> mass(&problem.mass[36 * static_cast<std::size_t>(body)]);
+  const Eigen::Map<const Vector6> applied(force.data());
+  Eigen::Map<Vector6>(&problem.free_velocity[6 * static_cast<std::size_t>(body)]) +=
+      problem.h_s * mass.llt().solve(applied);
 }
 
 }  // namespace cleave

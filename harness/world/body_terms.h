@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 
 #include "harness/world/ode_world.h"
 #include "solver/step_problem.h"
@@ -26,5 +27,8 @@ Eigen::Vector3d implicit_gyroscopic_torque(const Eigen::Matrix3d& inertia, const
 // Appends mass and free_velocity of every body of the world to the problem. Throws std::runtime_error naming
 // the body for what is not extracted: kinematic or disabled bodies, damping, a limit on angular speed.
 void append_body_terms(const OdeWorld& world, double h_s, StepProblem& problem);
+
+// Adds h M^-1 (force, torque) to the free velocity of a body of the problem: force in N, torque in N m.
+void add_force(int body, std::span<const double, 6> force, StepProblem& problem);
 
 }  // namespace cleave

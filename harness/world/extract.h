@@ -39,8 +39,8 @@ struct ExtractOptions {
 
 // Builds the rows. Friction bounds of `box` and `box-converged` are left at +-mu * warm normal impulse;
 // friction.h sets them. warm_impulse comes from memory (zero where nothing matched). Throws
-// std::invalid_argument naming an option outside its range, and std::runtime_error naming a joint type,
-// limit, motor or body setting of the world that is not extracted; none is ever dropped.
+// std::invalid_argument naming an option outside its range, and std::runtime_error naming a joint type
+// or body setting of the world that is not extracted; none is ever dropped.
 StepProblem extract(const OdeWorld& world, std::span<const ContactPoint> contacts,
                     const ExtractOptions& options, const ContactMemory& memory);
 

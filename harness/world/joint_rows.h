@@ -1,15 +1,8 @@
-// Rows of ODE's permanent joints: ball (3 rows), hinge (5), slider (5) and fixed (6).
+// Rows of the permanent joints of a world, as ODE builds them (ode_joint.h).
 //
-// Jacobian, error and row order are ODE's own: the rows come from the functions dWorldStep calls, because
-// ODE's public interface does not give a joint's rest pose (the relative rotation a fixed joint or a slider
-// holds). Rows of a joint with the static environment are those of its one body, whichever side of
-// dJointAttach it was on.
-//
-// A ball or fixed joint has an erp and a cfm of its own, which ODE copies from the world when the joint is
-// created. One that still equals dWorldGetERP (dWorldGetCFM) counts as not set and takes the step's value;
-// one set by dJointSetBallParam or dJointSetFixedParam is kept. A world's ERP and CFM must therefore not be
-// changed after its joints exist. As in ODE, the own values of a fixed joint govern its three position rows
-// only.
+// Rows of a joint with the static environment are those of its one body, whichever side of dJointAttach it was
+// on. All rows are bilateral by their kind, that of a stop or motor with bounds: h times those of the force. What a
+// motor at its stop pushes with goes into the free velocities.
 #pragma once
 
 #include "harness/world/contact_memory.h"
@@ -19,13 +12,13 @@
 namespace cleave {
 
 // Appends the rows of every enabled joint of world.content().joints in that order, with the joint's index as
-// row_constraint. erp, cfm: of the step, for joints without their own. Throws std::runtime_error naming the
-// type and the feature for any other joint type, for whatever is set on an axis (joint_axes.h: limit, motor,
-// bounce, ...), and for a joint on a body that content().joints does not list.
+// row_constraint. erp, cfm: of the step, for joints without their own. problem: has its bodies (body_terms.h).
+// Throws std::runtime_error naming the type for any other joint type, and for a joint on a body that
+// content().joints does not list.
 void append_joint_rows(const OdeWorld& world, double h_s, double erp, double cfm, const ContactMemory& memory,
                        StepProblem& problem);
 
-// The widest gap of an enabled joint: the norm of ODE's position error over the rows that hold points
+// The widest gap of an enabled joint: the norm of ODE's position error over the permanent rows that hold points
 // together (not those that hold directions), m. 0 without joints.
 double joint_drift_m(const OdeWorld& world);
 

@@ -6,11 +6,13 @@
 #include <cstdarg>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
 #include "harness/base/hash.h"
+#include "harness/world/joint_axes.h"
 #include "harness/world/overlapping_boxes.h"
 
 namespace cleave {
@@ -176,8 +178,10 @@ std::unique_ptr<OdeWorld> OdeWorld::rebuilt(double erp, double cfm) const {
     copy->set_state(i, state(i));
     copy_forces(content_.bodies[i], copy->content_.bodies[i]);
   }
-  for (std::size_t j = 0; j < content_.joints.size(); ++j)
+  for (std::size_t j = 0; j < content_.joints.size(); ++j) {
     (dJointIsEnabled(content_.joints[j]) ? dJointEnable : dJointDisable)(copy->content_.joints[j]);
+    copy_axis(content_.joints[j], copy->content_.joints[j]);
+  }
   return copy;
 }
 
@@ -232,6 +236,16 @@ std::vector<double> OdeWorld::positions_m() const {
     positions_m.insert(positions_m.end(), position_m.begin(), position_m.end());
   }
   return positions_m;
+}
+
+std::vector<int> OdeWorld::body_groups() const {
+  std::map<std::string, int> number_of_name;
+  std::vector<int> groups;
+  for (const std::string& name : content_.body_group)
+    groups.push_back(
+        name.empty() ? -1
+                     : number_of_name.emplace(name, static_cast<int>(number_of_name.size())).first->second);
+  return number_of_name.empty() ? std::vector<int>() : groups;
 }
 
 void OdeWorld::set_state(int body, const BodyState& state) {

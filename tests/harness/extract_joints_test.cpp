@@ -8,102 +8,16 @@
 #include "harness/world/extract.h"
 #include "tests/harness/dense_oracle.h"
 #include "tests/harness/extract_test_scene.h"
+#include "tests/harness/joined_bodies.h"
 
 namespace cleave {
 namespace {
-
-constexpr double kStep_s = 1.0 / 60;
-
-enum class Attachment { two_bodies, body_then_static, static_then_body };
-
-struct JointCase {
-  const char* name;
-  int rows;
-  dJointID (*create)(dWorldID world);
-  void (*set_geometry)(dJointID joint, TestRandom& random);
-};
-
-void set_ball(dJointID joint, TestRandom& r) {
-  dJointSetBallAnchor(joint, r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(-1, 1));
-}
-void set_hinge(dJointID joint, TestRandom& r) {
-  dJointSetHingeAnchor(joint, r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(-1, 1));
-  dJointSetHingeAxis(joint, r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(-1, 1));
-}
-void set_slider(dJointID joint, TestRandom& r) {
-  dJointSetSliderAxis(joint, r.uniform(-1, 1), r.uniform(-1, 1), r.uniform(-1, 1));
-}
-void set_fixed(dJointID joint, TestRandom&) { dJointSetFixed(joint); }
-
-const JointCase kJointCases[] = {
-    {"ball", 3, [](dWorldID w) { return dJointCreateBall(w, nullptr); }, set_ball},
-    {"hinge", 5, [](dWorldID w) { return dJointCreateHinge(w, nullptr); }, set_hinge},
-    {"slider", 5, [](dWorldID w) { return dJointCreateSlider(w, nullptr); }, set_slider},
-    {"fixed", 6, [](dWorldID w) { return dJointCreateFixed(w, nullptr); }, set_fixed},
-};
-
-dJointID add_joint(dWorldID world, SceneContent& content, const JointCase& kind, Attachment attachment,
-                   TestRandom& random) {
-  const dJointID joint = kind.create(world);
-  const dBodyID first = content.bodies.front(), last = content.bodies.back();
-  if (attachment == Attachment::two_bodies) dJointAttach(joint, first, last);
-  if (attachment == Attachment::body_then_static) dJointAttach(joint, last, nullptr);
-  if (attachment == Attachment::static_then_body) dJointAttach(joint, nullptr, last);
-  kind.set_geometry(joint, random);
-  content.joints.push_back(joint);
-  return joint;
-}
-
-// Two bodies joined at one pose, then moved off it: a position error in every row, `size` in metres and
-// radians.
-void displace(const SceneContent& content, TestRandom& random, double size) {
-  for (const dBodyID body : content.bodies) {
-    const dReal* x = dBodyGetPosition(body);
-    const dReal* q = dBodyGetQuaternion(body);
-    dQuaternion turned{q[0], q[1], q[2], q[3]};
-    for (double& entry : turned) entry += random.uniform(-size, size);
-    dBodySetPosition(body, x[0] + random.uniform(-size, size), x[1] + random.uniform(-size, size),
-                     x[2] + random.uniform(-size, size));
-    dBodySetQuaternion(body, turned);
-  }
-}
-
-struct Softness {
-  double erp = 0.2;
-  double cfm = 1e-5;
-};
-
-std::unique_ptr<OdeWorld> make_joined_bodies(const JointCase& kind, Attachment attachment, std::uint64_t seed,
-                                             bool gyroscopic, Softness of_world,
-                                             const std::function<void(dJointID)>& change = {}) {
-  return make_test_world(
-      [=](dWorldID world, dSpaceID, SceneContent& content) {
-        TestRandom random(seed);
-        dWorldSetERP(world, of_world.erp);
-        dWorldSetCFM(world, of_world.cfm);
-        add_random_body(world, content, random);
-        add_random_body(world, content, random);
-        const dJointID joint = add_joint(world, content, kind, attachment, random);
-        if (change) change(joint);
-        displace(content, random, seed % 2 ? 0.05 : 0.6);
-      },
-      9.81, gyroscopic);
-}
-
-StepProblem extract_joints(const OdeWorld& world, Softness softness) {
-  ExtractOptions options;
-  options.h_s = kStep_s;
-  options.erp = softness.erp;
-  options.cfm = softness.cfm;
-  return extract(world, {}, options, ContactMemory());
-}
 
 TEST(JointRows, OneStepOfEveryKindAgreesWithDWorldStep) {
   const Softness softness{0.3, 1e-5};
   for (const JointCase& kind : kJointCases) {
     double largest = 0;
-    for (const Attachment attachment :
-         {Attachment::two_bodies, Attachment::body_then_static, Attachment::static_then_body})
+    for (const Attachment attachment : kAttachments)
       for (const bool gyroscopic : {false, true})
         for (std::uint64_t seed = 1; seed <= 20; ++seed) {
           const auto world = make_joined_bodies(kind, attachment, seed, gyroscopic, softness);
@@ -123,8 +37,7 @@ TEST(JointRows, OneStepOfEveryKindAgreesWithDWorldStep) {
 
 TEST(JointRows, RowsAreBilateralWithTheDynamicBodyFirst) {
   for (const JointCase& kind : kJointCases)
-    for (const Attachment attachment :
-         {Attachment::two_bodies, Attachment::body_then_static, Attachment::static_then_body}) {
+    for (const Attachment attachment : kAttachments) {
       const auto world = make_joined_bodies(kind, attachment, 4, true, {});
       const StepProblem problem = extract_joints(*world, {});
       EXPECT_EQ(find_problem_error(problem), "") << kind.name;
@@ -272,27 +185,7 @@ TEST(JointRows, OtherTypesAreRefusedByName) {
   }
 }
 
-TEST(JointRows, LimitsMotorsAndUnlistedJointsAreRefusedByName) {
-  const auto hinge_with = [](int parameter, double value) {
-    return [=](dWorldID w, SceneContent& content) {
-      TestRandom random(3);
-      dJointSetHingeParam(add_joint(w, content, kJointCases[1], Attachment::two_bodies, random), parameter,
-                          value);
-    };
-  };
-  const auto slider_with = [](int parameter, double value) {
-    return [=](dWorldID w, SceneContent& content) {
-      TestRandom random(3);
-      dJointSetSliderParam(add_joint(w, content, kJointCases[2], Attachment::two_bodies, random), parameter,
-                           value);
-    };
-  };
-  expect_refused(hinge_with(dParamLoStop, -1), "limit on axis 1 of a hinge");
-  expect_refused(hinge_with(dParamHiStop, 1), "limit on axis 1 of a hinge");
-  expect_refused(hinge_with(dParamFMax, 5), "motor on axis 1 of a hinge");
-  expect_refused(slider_with(dParamLoStop, -1), "limit on axis 1 of a slider");
-  expect_refused(slider_with(dParamHiStop, 1), "limit on axis 1 of a slider");
-  expect_refused(slider_with(dParamFMax, 5), "motor on axis 1 of a slider");
+TEST(JointRows, UnlistedJointsAndBodiesAreRefusedByName) {
   expect_refused(
       [](dWorldID w, SceneContent& content) {
         TestRandom random(3);

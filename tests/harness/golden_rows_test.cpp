@@ -55,6 +55,10 @@ std::vector<Case> all_cases() {
       {"rock_pile", {"--scene", "rock_pile", "--bodies", "40", "--steps", "120"}},
       {"large_rock_pile", {"--scene", "large_rock_pile", "--bodies", "50", "--steps", "120"}},
       {"silo", {"--scene", "silo", "--bodies", "30", "--steps", "30"}},
+      {"crane", {"--scene", "crane", "--links", "20", "--steps", "60", "--dt", "0.001", "--cfm", "1e-10"}},
+      {"mixed_site",
+       {"--scene", "mixed_site", "--links", "50", "--rings", "1", "--steps", "60", "--dt", "0.001", "--cfm",
+        "1e-10"}},
       {"stiff_pile", {"--scene", "rock_pile", "--bodies", "30", "--steps", "90", "--cfm", "1e-10"}},
   };
   for (const ShippedScene& scene : shipped_scenes()) {

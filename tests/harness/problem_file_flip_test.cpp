@@ -146,6 +146,23 @@ TEST_F(FlippedProblemFile, TextsOfUnusualTypesAreRefused) {
   }
 }
 
+// An integer's type is its class, its sign, its size, and where its bits begin: a place beyond them is read as nobody knows
+// what.
+TEST_F(FlippedProblemFile, IntegersOfUnusualTypesAreRefused) {
+  write_problem_file(path_, file_);
+  const std::string bytes = read_text(path_);
+  const std::size_t step = bytes.find(std::string("\x10\x08\0\0", 4), bytes.find(std::string("step\0", 5)));
+  ASSERT_NE(step, std::string::npos);
+  constexpr int kOffset = 8, kPrecision = 10;
+  for (const int changed : {kOffset, kPrecision}) {
+    std::string damaged = bytes;
+    damaged[step + changed] ^= '\x08';
+    std::ofstream(path_, std::ios::binary) << damaged;
+    EXPECT_NE(error_of(path_).find("bit unusual signed integer, allowed: an integer"), std::string::npos)
+        << error_of(path_);
+  }
+}
+
 // What h5py writes of a Python string lies in a heap; pointers into it are followed by the library alone.
 TEST_F(FlippedProblemFile, DamagedHeapOfTextsEndsInALine) {
   write_unchecked(path_, file_, [](const Hdf5Writer&, const std::string& name) { return name == "scene"; });

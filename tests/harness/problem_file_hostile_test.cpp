@@ -179,9 +179,9 @@ TEST_F(HostileProblemFile, FullDiskIsOneLine) {
         "/bin/bash", {"-c", "trap '' XFSZ; ulimit -c 0; ulimit -f " + kilobytes + "; exec " + CLEAVE_PROGRAM +
                                 " " + command + " --scene rock_pile --out " + (directory_ / "out").string()});
   };
-  const ProgramResult recorded = run("28", "record --bodies 60 --at 10,20");
+  const ProgramResult recorded = run("64", "record --bodies 60 --at 100,120");
   EXPECT_EQ(recorded.exit_code, 1);
-  const std::string line = (directory_ / "out/rock_pile_step000010.h5").string();
+  const std::string line = (directory_ / "out/rock_pile_step000100.h5").string();
   EXPECT_NE(recorded.err.find(line + ": cannot be written: File too large\n"), std::string::npos)
       << recorded.err;
   for (const fs::directory_entry& entry : fs::directory_iterator(directory_ / "out"))

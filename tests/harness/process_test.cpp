@@ -206,6 +206,22 @@ TEST(LittleMemory, CallsNoFileDamaged) {
   EXPECT_GT(lines, 0);
 }
 
+// HDF5 crashes where it finds no memory for a file's cache: a window of some hundred kB.
+TEST(LittleMemory, EndsNoWriterInACrash) {
+  const Shell shell;
+  ASSERT_EQ(shell.run("$cleave record --scene rock_pile --bodies 30 --at 10,40 --out $d/in").exit_code, 0);
+  int lines = 0;
+  for (int kbytes = 36000; kbytes <= 54000; kbytes += 150) {
+    const ProgramResult replayed =
+        shell.run("ulimit -v " + std::to_string(kbytes) +
+                  "; exec $cleave replay $d/in/*.h5 --solver schur,pgs --threads 2 --write-solutions "
+                  "--out $d/out --force");
+    EXPECT_TRUE(replayed.exit_code >= 0 && replayed.exit_code <= 2) << kbytes << " kB: " << replayed.exit_code;
+    lines += replayed.exit_code == 1;
+  }
+  EXPECT_GT(lines, 0);
+}
+
 // A command that has begun to write rows.
 struct Running {
   Running(const fs::path& out, const Arguments& arguments, int lines) : csv(out / "steps.csv") {

@@ -100,6 +100,7 @@ TEST(Record, RefusesOptionsThatItsSolverDoesNotUse) {
                                    {"--degree-scope", "whole", "schur", "exact"},
                                    {"--as-printed", "", "schur", "schur", {"--partitioner", "maxdp"}},
                                    {"--skip-small-islands", "", "schur", "exact"},
+                                   {"--merge-small", "", "schur", "exact"},
                                    {"--max-iterations", "90", "exact", "pgs"},
                                    {"--reuse-analysis", "", "exact", "ode-quickstep"},
                                    {"--predictor-sweeps", "20", "exact", "interior-point:monolithic"},

@@ -30,7 +30,7 @@ struct RecordedScene {
 
 // Small, but with contacts, joints, several parts and several islands. Cold rocks, a chain as it comes to lie
 // in the funnel, a tower at rest and hit by the ball, masses of 10, 100 and 1000 kg, a softer and a stiffer
-// pile.
+// pile, a crane that lifts a rock by a motor.
 const std::vector<RecordedScene> kScenes = {
     {"chain", {"--scene", "chain_drop", "--links", "24"}, "70,100"},
     {"short_chain", {"--scene", "chain_drop", "--links", "12"}, "69"},
@@ -39,13 +39,25 @@ const std::vector<RecordedScene> kScenes = {
     {"large_pile", {"--scene", "large_rock_pile", "--bodies", "30"}, "40,120"},
     {"soft_pile", {"--scene", "rock_pile", "--bodies", "30", "--cfm", "1e-3"}, "40,120"},
     {"stiff_pile", {"--scene", "large_rock_pile", "--bodies", "30", "--cfm", "1e-7"}, "120"},
+    {"site",
+     {"--scene", "mixed_site", "--links", "50", "--rings", "1", "--dt", "0.001", "--cfm", "1e-8"},
+     "40"},
 };
 
 struct Recorded {
   std::string name;
   StepProblem problem;
   std::vector<double> position_m;
+  std::vector<int> group;
 };
+
+// Those of the scene; where it names none, four in turn.
+std::vector<int> groups_of(const ProblemFile& file) {
+  std::vector<int> groups = known_groups(file);
+  if (!groups.empty()) return groups;
+  for (int body = 0; body < file.problem.body_count(); ++body) groups.push_back(body % 4);
+  return groups;
+}
 
 class RecordedSteps : public testing::Test {
  protected:
@@ -60,8 +72,10 @@ class RecordedSteps : public testing::Test {
       for (const auto& entry : std::filesystem::directory_iterator(*directory_ / scene.name))
         if (entry.path().extension() == ".h5")
           by_name[scene.name + "/" + entry.path().stem().string()] = read_problem_file(entry.path());
-      for (auto& [name, file] : by_name)
-        recorded_.push_back({name, std::move(file.problem), std::move(file.position)});
+      for (auto& [name, file] : by_name) {
+        std::vector<int> groups = groups_of(file);
+        recorded_.push_back({name, std::move(file.problem), std::move(file.position), std::move(groups)});
+      }
     }
   }
   static void TearDownTestSuite() {
@@ -81,15 +95,17 @@ struct NamedParts {
 };
 
 // Every partitioner with every one of the refiners, and every body for itself.
-std::vector<NamedParts> partitions_of(const StepProblem& problem, const std::vector<double>& position_m,
-                                      int max_bodies, const std::vector<std::string>& refiners) {
+std::vector<NamedParts> partitions_of(const Recorded& recorded, int max_bodies,
+                                      const std::vector<std::string>& refiners) {
+  const StepProblem& problem = recorded.problem;
   const CommonValues common = {{"max-bodies", std::to_string(max_bodies)}};
   std::vector<NamedParts> all;
   for (const Algorithm& partitioner : read_list("partitioner", "all", common))
     for (const std::string& refiner : refiners)
-      all.push_back({partitioner.name + "+" + refiner, Splitter({partitioner, read_named("refiner", refiner)})
-                                                           .run(problem, {}, position_m)
-                                                           .parts.part_of_body});
+      all.push_back(
+          {partitioner.name + "+" + refiner, Splitter({partitioner, read_named("refiner", refiner)})
+                                                 .run(problem, {}, {recorded.position_m, recorded.group})
+                                                 .parts.part_of_body});
   std::vector<int> own(problem.body_count());
   for (std::size_t body = 0; body < own.size(); ++body) own[body] = static_cast<int>(body);
   all.push_back({"own", own});
@@ -139,9 +155,9 @@ void expect_solution(const StepProblem& problem, StepSolver& solver, const std::
 }
 
 TEST_F(RecordedSteps, AreProblemsWorthSolving) {
-  ASSERT_EQ(recorded_.size(), 12u);
+  ASSERT_EQ(recorded_.size(), 13u);
   int several_islands = 0;
-  for (const auto& [name, problem, _] : recorded_) {
+  for (const auto& [name, problem, position_m, group] : recorded_) {
     EXPECT_GE(std::ranges::count(problem.row_kind, RowKind::normal), 8) << name;
     EXPECT_GE(std::ranges::count(problem.row_kind, RowKind::friction), 16) << name;
     several_islands += count_islands(body_graph_of(problem)) > 1;
@@ -150,12 +166,13 @@ TEST_F(RecordedSteps, AreProblemsWorthSolving) {
 }
 
 TEST_F(RecordedSteps, EverySolverOnEveryPartitionFindsTheSameVelocities) {
-  for (const auto& [name, problem, position_m] : recorded_) {
+  for (const Recorded& recorded : recorded_) {
+    const auto& [name, problem, position_m, group] = recorded;
     Solution reference = start_from(problem, false);
     make_step_solver("dense", {})->solve(problem, std::vector<int>(problem.body_count(), 0), reference);
     const ResidualReport report = judge(problem, reference.impulse);
     ASSERT_TRUE(report.exact) << name;
-    const std::vector<NamedParts> partitions = partitions_of(problem, position_m, 5, {"none", "fm"});
+    const std::vector<NamedParts> partitions = partitions_of(recorded, 5, {"none", "fm"});
     for (const std::string& solver_name : solvers_that_never_miss()) {
       const auto solver = make_step_solver(solver_name, {});
       for (const auto& [parts_name, part_of_body] : partitions) {
@@ -171,9 +188,10 @@ TEST_F(RecordedSteps, EverySolverOnEveryPartitionFindsTheSameVelocities) {
 // solved, the stiff one is not.
 TEST_F(RecordedSteps, AlternationIsExactOrSaysThatItIsNot) {
   std::map<std::string, int> solved, missed;  // by scene
-  for (const auto& [name, problem, position_m] : recorded_) {
+  for (const Recorded& recorded : recorded_) {
+    const auto& [name, problem, position_m, group] = recorded;
     const auto solver = make_step_solver("alternate:schur-rows", {});
-    for (const auto& [parts_name, part_of_body] : partitions_of(problem, position_m, 5, {"none"})) {
+    for (const auto& [parts_name, part_of_body] : partitions_of(recorded, 5, {"none"})) {
       SCOPED_TRACE(name + " " + parts_name);
       Solution solution = start_from(problem, false);
       const SolveSummary summary = solver->solve(problem, part_of_body, solution);

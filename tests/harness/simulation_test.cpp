@@ -69,9 +69,13 @@ void expect_exact(const Finished& run, std::size_t rows) {
 
 TEST(Smoke, EverySceneRunsSmallWithAllCombinations) {
   const std::map<std::string, Arguments> small = {
-      {"chain_drop", {"--links", "12"}}, {"log_tower", {"--layers", "4", "--logs", "2"}},
-      {"rock_pile", {"--bodies", "12"}}, {"large_rock_pile", {"--bodies", "12"}},
+      {"chain_drop", {"--links", "12"}},
+      {"log_tower", {"--layers", "4", "--logs", "2"}},
+      {"rock_pile", {"--bodies", "12"}},
+      {"large_rock_pile", {"--bodies", "12"}},
       {"silo", {"--bodies", "12"}},
+      {"crane", {"--links", "6", "--dt", "0.001", "--cfm", "1e-10"}},
+      {"mixed_site", {"--links", "50", "--rings", "1", "--dt", "0.001", "--cfm", "1e-10"}},
   };
   for (const ShippedScene& scene : shipped_scenes()) {
     const auto sizes = small.find(scene.name);
@@ -321,12 +325,17 @@ std::vector<Algorithm> with_max_bodies(int max_bodies) {
   return list;
 }
 
-// Bodies in a row.
+// Bodies in a row, three a group.
 BodyGraph row_of_bodies(const std::vector<double>& mass_kg, const std::vector<ConstraintLink>& links) {
   std::vector<double> position_m;
-  for (std::size_t body = 0; body < mass_kg.size(); ++body)
+  std::vector<int> group;
+  for (int body = 0; body < std::ssize(mass_kg); ++body) {
     position_m.insert(position_m.end(), {static_cast<double>(body), 0.0, 0.0});
-  return BodyGraph(mass_kg, links, std::nullopt, position_m);
+    group.push_back(body / 3);
+  }
+  BodyGraph graph(mass_kg, links, std::nullopt, position_m);
+  graph.set_groups(group);
+  return graph;
 }
 
 // Islands {0, 2} and {1, 3, 4, 5, 6} and the single body 7, with at most three bodies a part.

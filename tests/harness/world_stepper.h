@@ -26,6 +26,7 @@ class WorldStepper {
         solver_(make_step_solver("exact", {})) {}
 
   void step() {
+    world_->before_step(steps_done_++);
     const std::vector<ContactPoint> contacts = world_->collide(8, nullptr);
     problem_ = extract(*world_, contacts, options_, memory_);
     solution_.impulse = problem_.warm_impulse;
@@ -84,6 +85,7 @@ class WorldStepper {
   ContactMemory memory_;
   StepProblem problem_;
   Solution solution_;
+  int steps_done_ = 0;
   int inexact_steps_ = 0;
   int unconverged_bounds_ = 0;
 };

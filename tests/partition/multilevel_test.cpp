@@ -59,7 +59,8 @@ TEST(Coarsening, keeps_bodies_and_cuts) {
     const int most = random.integer(2, 5);
     std::vector<int> coarse_of_node;
     LevelGraph coarse;
-    const int nodes = coarsening.match(fine, most, coarse_of_node);
+    const int nodes =
+        coarsening.match(fine, most, random.integer(0, std::max(fine.node_count(), 1) - 1), coarse_of_node);
     coarsening.contract(fine, coarse_of_node, nodes, coarse);
     ASSERT_EQ(coarse.node_count(), nodes);
     EXPECT_EQ(coarse.body_count(), fine.body_count());
@@ -80,9 +81,9 @@ TEST(Coarsening, joins_by_the_heaviest_edge) {
   Coarsening coarsening;
   std::vector<int> coarse_of_node;
   const Bodies path{"path", {1, 1, 1, 1}, {{0, 1, 3}, {1, 2, 9}, {2, 3, 3}}};
-  EXPECT_EQ(coarsening.match(level_graph(path.graph()), 2, coarse_of_node), 2);
+  EXPECT_EQ(coarsening.match(level_graph(path.graph()), 2, 0, coarse_of_node), 2);
   EXPECT_EQ(coarse_of_node, (std::vector<int>{0, 0, 1, 1}));  // the ends, of least degree, choose first
-  EXPECT_EQ(coarsening.match(level_graph(path.graph()), 1, coarse_of_node), 4);
+  EXPECT_EQ(coarsening.match(level_graph(path.graph()), 1, 0, coarse_of_node), 4);
 }
 
 TEST(LevelGraph, splits_into_the_edges_of_both_sides) {

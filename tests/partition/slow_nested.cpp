@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
-#include <tuple>
+
+#include "tests/partition/slow_leftovers.h"
 
 namespace cleave::partition_test {
 namespace {
@@ -29,38 +29,6 @@ Bodies among(const Bodies& all, const std::vector<int>& members) {
     if (is_in(link.body_a) && is_in(link.body_b))
       bodies.links.push_back({inside(link.body_a), inside(link.body_b), link.rows});
   return bodies;
-}
-
-int bodies_in(const Partition& partition, int part) {
-  return static_cast<int>(std::ranges::count(partition.part_of_body, part));
-}
-
-long rows_between(const Bodies& bodies, const Partition& partition, int part, int other) {
-  long rows = 0;
-  for (const ConstraintLink& link : bodies.links) {
-    if (link.body_a < 0 || link.body_b < 0) continue;
-    const int a = partition.part_of_body[link.body_a], b = partition.part_of_body[link.body_b];
-    if ((a == part && b == other) || (a == other && b == part)) rows += link.rows;
-  }
-  return rows;
-}
-
-// The next part to be joined and with which; ids are those of the parts that are there now.
-std::optional<std::pair<int, int>> next_to_join(const Bodies& bodies, const Partition& partition,
-                                                int most_bodies, int most_joined) {
-  std::optional<std::tuple<int, int, long, int>> best;  // bodies, part, - rows, other
-  for (int part = 0; part < partition.part_count; ++part) {
-    const int size = bodies_in(partition, part);
-    if (2 * size >= most_bodies) continue;
-    for (int other = 0; other < partition.part_count; ++other) {
-      if (other == part || size + bodies_in(partition, other) > most_joined) continue;
-      const long rows = rows_between(bodies, partition, part, other);
-      const std::tuple found{size, part, -rows, other};
-      if (rows > 0 && (!best || found < *best)) best = found;
-    }
-  }
-  if (!best) return std::nullopt;
-  return std::pair{std::get<1>(*best), std::get<3>(*best)};
 }
 
 class SlowRecursion {
@@ -93,14 +61,7 @@ class SlowRecursion {
     const int most_joined = most_bodies <= grown_.max_bodies
                                 ? grown_.max_bodies
                                 : static_cast<int>(std::floor(1.2 * most_bodies));
-    while (parts.part_count > arity_) {
-      const auto pair = next_to_join(bodies, parts, most_bodies, most_joined);
-      if (!pair) break;
-      const auto [low, high] = std::minmax(pair->first, pair->second);
-      for (int& part : parts.part_of_body) part = part == high ? low : part - (part > high);
-      --parts.part_count;
-      ++joined_;
-    }
+    joined_ += slow_join_leftovers(bodies, {arity_, most_bodies / 2 + most_bodies % 2, most_joined}, parts);
     RefineOptions refined = refined_;
     refined.max_bodies = most_bodies;
     refiner_.run(bodies.graph(), refined, parts);

@@ -148,6 +148,19 @@ std::vector<double> Bodies::positions() const {
   return row;
 }
 
+std::vector<int> Bodies::groups() const {
+  if (!group.empty()) return group;
+  std::vector<int> in_turn;
+  for (int body = 0; body < count(); ++body) in_turn.push_back(body % 4 - 1);
+  return in_turn;
+}
+
+BodyGraph Bodies::graph() const {
+  BodyGraph graph(mass_kg, links, std::nullopt, positions());
+  graph.set_groups(groups());
+  return graph;
+}
+
 std::vector<int> Random::permutation(int count) {
   std::vector<int> order(count);
   std::iota(order.begin(), order.end(), 0);
@@ -218,6 +231,8 @@ Partition random_partition(Random& random, int bodies) {
 Bodies reversed(const Bodies& bodies) {
   Bodies result = bodies;
   result.position_m = bodies.positions();
+  result.group = bodies.groups();
+  std::ranges::reverse(result.group);
   const auto mirror = [&](int body) { return body == kStatic ? kStatic : bodies.count() - 1 - body; };
   std::ranges::reverse(result.mass_kg);
   const std::vector<double> position_m = bodies.positions();

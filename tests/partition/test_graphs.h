@@ -41,10 +41,12 @@ struct Bodies {
   std::vector<double> mass_kg;
   std::vector<ConstraintLink> links;
   std::vector<double> position_m = {};  // (n, 3); empty: in a row along x, a metre apart
+  std::vector<int> group = {};          // (n); empty: -1, 0, 1, 2 in turn
 
   int count() const { return static_cast<int>(mass_kg.size()); }
   std::vector<double> positions() const;
-  BodyGraph graph() const { return BodyGraph(mass_kg, links, std::nullopt, positions()); }
+  std::vector<int> groups() const;
+  BodyGraph graph() const;
 };
 
 // Families, by seed: empty, single and few bodies, path, star, tree, complete, pile, sparse and dense random,

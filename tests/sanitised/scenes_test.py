@@ -16,6 +16,8 @@ RUNS = {
     "rock_pile": (80, "--bodies", "30"),
     "large_rock_pile": (80, "--bodies", "40", "--rock-shape", "convex"),
     "silo": (10, "--bodies", "20"),
+    "crane": (10, "--links", "20", "--dt", "0.001", "--cfm", "1e-10"),
+    "mixed_site": (40, "--links", "50", "--rings", "1", "--dt", "0.001", "--cfm", "1e-10"),
     "ladder_stack": (10, "--copies", "2"),
     "ladder_heavy_top": (10,),
     "ladder_alternating": (10,),

@@ -28,7 +28,7 @@ inline std::vector<ShippedScene> shipped_scenes() {
   for (const SceneEntry& scene : scenes()) {
     const std::string name = scene.name;
     if (name != "file") {
-      all.push_back({&scene, {}, name, !name.starts_with("ladder_")});
+      all.push_back({&scene, {}, name, !name.starts_with("ladder_") && name != "crane"});
       continue;
     }
     for (const auto& file : std::filesystem::directory_iterator(CLEAVE_SOURCE_DIR "/scenarios/files"))

@@ -11,7 +11,7 @@ from synthetic import ROOT
 
 from cleave_scripts.documents import cuts, speed
 from cleave_scripts.documents.stored import Stored
-from cleave_scripts.measurements import dense_ratios, modelled_times
+from cleave_scripts.measurements import dense_ratios, modelled_times, partition_worth
 from cleave_scripts.results.paper import COMBINATIONS
 
 STAND_IN = f"""#!/usr/bin/python3
@@ -52,7 +52,7 @@ names = list(itertools.product(asked_partitioners(given.get("--partitioner", "-"
 path = write_steps(out, [dict(**recorded(file), partitioner=partitioner, refiner=refiner,
                        threads=threads, rows=1200, interface_rows=50 if "whole" in words else 40,
                        status=os.environ.get("STAND_IN_STATUS", "ok"), t_s_ms=alone_ms(int(file[-9:-3])) / threads, t_s_waiting_ms=float(os.environ.get("STAND_IN_WAITING", 0.25)),
-                       factorizations=9 if "--cold" in words else 2, seed=1, solver=solver,
+                       factorizations=9 if "--cold" in words else 2, seed=1, solver=solver, t_pr_ms=0.1,
                        **modelled(int(file[-9:-3]), threads))
                   for file in files for partitioner, refiner in names for solver in given.get("--solver", "schur").split(",")])
 os.utime(path, (0, float(os.environ.get("STAND_IN_LATE_S", 0)) if beside else 0))
@@ -213,6 +213,50 @@ class ColdStartsTest(Measurement):
         self.check_status_refused()
 
 
+class KargerTest(Measurement):
+    script = "karger"
+
+    def test_every_scene_meets_every_number_of_trials(self):
+        self.run_it()
+        calls = self.calls()
+        self.assertEqual(len(calls), 4 * 2)
+        self.assertIn("karger@trials=10000", calls[-1])
+        self.assertEqual(len(self.rows("karger.csv")), 4 * 4 * 7 * 2)
+
+    def test_cells_that_are_not_solved_are_refused(self):
+        with unittest.mock.patch.dict(os.environ, STAND_IN_STATUS="not_converged"):
+            said = self.run_it(code=1).stderr.splitlines()
+        self.assertIn("56 of 56 replayed cells are not ok", said[-1])
+        self.assertFalse((self.directory / "out").exists())
+
+
+class PartitionWorthTest(Measurement):
+    script = "partition_worth"
+
+    def test_every_step_meets_every_solver_and_partition(self):
+        self.run_it()
+        self.assertEqual(len(self.calls()), 9 * (1 + 2 * 2))
+        self.assertEqual(len(self.rows("partition_worth.csv")), 9 * 2 * (3 * 15 + 10))
+        self.assertTrue((self.directory / "out" / "partition_worth.png").exists())
+
+    def test_bad_input_is_one_line(self):
+        self.check_least("--repeats", 1)
+
+
+class PartitionWorthAnalysisTest(unittest.TestCase):
+
+    def test_the_fastest_partition_counts_for_each_number_of_workers(self):
+        def row(solver, partitioner, t_s_ms, model_ms, threads=1):
+            return {"scene": "s", "bodies": 9, "cfm": 1e-5, "rows": 30, "solver": solver, "partitioner": partitioner, "refiner": "fm",
+                    "threads": threads, "t_pr_ms": 1, "t_s_ms": t_s_ms, **{f"t_s_model_p{p}_ms": model_ms for p in partition_worth.MODELLED}}
+
+        problem, = partition_worth.problems([row("a", "mix", 9, 4), row("a", "bfs", 7, 6), row("a", "mix", 5, 0, 2), row("b", "-", 4, 3.9)])
+        self.assertEqual(problem.base_ms, 4)
+        self.assertEqual((problem.best["a", 1].partition, problem.best["a", 8].partition), ("bfs+fm", "mix+fm"))
+        self.assertEqual((problem.speed_up("a", 8), problem.measured["a"].time_ms), (4 / 5, 6))
+        self.assertEqual((problem.winner(1), problem.winner(64)), ("b", "b"))
+
+
 class AblationTest(Measurement):
     script = "ablation"
 
@@ -235,9 +279,11 @@ piles = [word.split("/")[-2] for word in sys.argv[1:] if word.endswith(".h5")]
 rows = ["exact", "pgs:100", "pgs:300", "pgs:700", "cholmod:supernodal", "cholmod:simplicial", "factor", "assemble",
         "schur_bodies:1", "schur_bodies:2"]
 json.dump({"benchmarks": [
-    {"name": f"{row}/{pile}/x", "run_type": "iteration", "real_time": time + (8 if row == "exact" else 0), "rows": 1000,
-     "factorizations": 5, "residual_m_per_s": 1e-12, "mflop": 6}
-    for row in rows for pile in piles for time in (2, 2, 50)]}, open(path, "w"))
+    {"name": f"{row}/{pile}/x", "run_name": f"{row}/{pile}", "cpu_time": 1, "run_type": "iteration",
+     "real_time": time + (8 if row == "exact" else 0), "rows": 1000, "factorizations": 5, "residual_m_per_s": 1e-12, "mflop": 6}
+    for row in rows for pile in piles for time in (2, 2, 50)] + [
+    {"name": "rocks_200/mix+fm/repeats:3", "run_name": "rocks_200/mix+fm", "cpu_time": time, "real_time": 3, "bodies": 200}
+    for time in (1, 2, 9)]}, open(path, "w"))
 """
 
 
@@ -273,12 +319,14 @@ class SolverBenchmarkTest(BenchmarkCase):
 class PartitionBenchmarkTest(BenchmarkCase):
     script, program_name = "benchmark_partitioners", "partition_benchmark"
 
-    def test_medians_of_the_repetitions_are_written(self):
+    def test_steps_are_recorded_and_medians_written(self):
         self.run_it("--repetitions", 7)
-        self.assertEqual(self.calls(), ["benchmark --benchmark_repetitions=7 --benchmark_report_aggregates_only=true "
-                                        f"--benchmark_out={self.directory}/out/partition_benchmark.json.part "
-                                        "--benchmark_out_format=json"])
-        self.assertIn("benchmarks", json.loads((self.directory / "out" / "partition_benchmark.json").read_text()))
+        calls = self.calls()
+        self.assertIn("--benchmark_repetitions=7", calls[-1])
+        self.assertIn("/rocks_10000.h5", calls[-1])
+        self.assertEqual(len(calls), 1 + calls[-1].count("--problem"))
+        rows = json.loads((self.directory / "out" / "partition_benchmark.json").read_text())["benchmarks"]
+        self.assertIn({"name": "rocks_200/mix+fm", "cpu_time": 2, "bodies": 200}, rows)
 
     def test_bad_input_is_one_line(self):
         self.check_least("--repetitions", 1)

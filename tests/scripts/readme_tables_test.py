@@ -51,7 +51,7 @@ class CheckoutTest(unittest.TestCase):
     def columns(self):
         """{small CSV file: its columns} as the commands write them."""
         written = {"extremes.csv": set(extremes_steps.WRITTEN)}
-        for command in ("two_threads", "modelled_workers", "busy_machine", "cold_starts", "ablation"):
+        for command in ("two_threads", "modelled_workers", "busy_machine", "cold_starts", "karger", "ablation"):
             listed = re.search(r"^COLUMNS = \((.*?)\)", (SCRIPTS / command).read_text(), re.M | re.S)[1]
             written[f"{command}.csv"] = set(re.findall(r'"(\w+)"', listed))
         with open(ROOT / "results" / "report" / "verdicts.csv", encoding="utf-8") as file:
@@ -256,7 +256,17 @@ class BlocksTest(unittest.TestCase):
 
     def test_partition_speed(self):
         stored_data.partition_benchmark(self.root)
-        self.assertIn("| 600 bodies, 1059 edges | " + "12.3 | " * 7 + "12.3 |", cuts.partition_speed(self.stored))
+        told = cuts.partition_speed(self.stored)
+        self.assertIn("| pile 200: 200 bodies, 353 edges | 2469 | ", told)
+        self.assertIn("| pile 1000 | 500 | ", told)
+        told = cuts.partition_ratios(self.stored)
+        self.assertIn("| multilevel, best | 0.800 | 0.800 (pile 200) | 8.10 | 8.10 | 1.00 |", told)
+        self.assertIn("| mindp+none | 1.06 | 1.20 (pile 200) | 8.10 | 8.10 | 1.00 |", told)
+
+    def test_karger(self):
+        stored_data.karger(self.root)
+        self.assertIn("| Rock Pile | 40 / 1.00 | 50 / 1.00 | 50 / 1.00 | 45 / 1.00 | 40 / 1.00 | 35 / 1.00 | 20 / 1.00 | 10000 | 100 | 41.0 | 21.0 |",
+                      cuts.karger(self.stored))
 
     def test_rows_that_are_missing_are_an_error(self):
         (self.root / "two_threads.csv").write_text("step,t_s_ms\n")

@@ -1,16 +1,18 @@
 """What partitioners and refiners cost, and what the open choices of the method do to the cut."""
+import math
 import tomllib
 
 from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements import cut_ratios, karger_trials
 from cleave_scripts.results.paper import DATA
 from cleave_scripts.table import text
 
 CUTS = tomllib.loads((DATA / "cuts.toml").read_text(encoding="utf-8"))
 CHOICES = {choice["name"]: tuple(choice["options"]) for choice in CUTS["choice"]}
 ABLATION = ("ablation.csv", "scripts/ablation")
+KARGER = ("karger.csv", "scripts/karger")
 SPEED = ("partition_benchmark.json", "scripts/benchmark_partitioners")
 TIMED = CUTS["timed"]
-GRAPHS = {"pile_200": "200 bodies, 353 edges", "pile_600": "600 bodies, 1059 edges"}
 
 
 def _by_cell(rows):
@@ -51,16 +53,66 @@ def ablation_facts(stored):
     return "Interface rows against the default:\n\n" + text.table(["choice", "", *cells], lines)
 
 
+def _graphs(stored):
+    return cut_ratios.by_graph(need(stored.benchmark(*SPEED), "the benchmark of partitioners", "name", "cpu_time"))
+
+
+def _title(graph, cells):
+    row = next(iter(cells.values()))
+    return f"{graph.replace('_', ' ')}: {row['bodies']:.0f} bodies, {row['edges']:.0f} edges"
+
+
 def partition_speed(stored):
-    entries = {entry["name"]: entry for entry in stored.benchmark(*SPEED) if entry.get("aggregate_name") == "median"}
-    lines, cut = [], []
-    for graph, title in GRAPHS.items():
-        row = [entries[f"{graph}/{name}_median"] for name in TIMED]
-        lines.append([title, *(text.number(entry["cpu_time"]) for entry in row)])
-        cut.append([title, *(f"{entry['interface_rows']:.0f}" for entry in row)])
-    names = list(TIMED.values())
-    return (f"CPU time in µs, medians, one core; {stored.origin(SPEED[0])}:\n\n" + text.table(["", *names], lines) +
-            "\n\nInterface rows:\n\n" + text.table(["", *names], cut))
+    graphs, names = _graphs(stored), list(TIMED)
+    times = [[_title(graph, cells), *(text.number(cells[name]["cpu_time"]) if name in cells else "" for name in names)]
+             for graph, cells in graphs.items()]
+    cut = [[graph.replace("_", " "), *(_cut(cells.get(name)) for name in names)] for graph, cells in graphs.items()]
+    return (f"CPU time in µs, medians, one core; {stored.origin(SPEED[0])}:\n\n" + text.table(["", *TIMED.values()], times) +
+            "\n\nInterface rows, of ten seeds the least without a part of more than 30 bodies (-: all had one):\n\n" +
+            text.table(["", *TIMED.values()], cut))
 
 
-BLOCKS = {"ablation": ablation, "ablation_facts": ablation_facts, "partition_speed": partition_speed}
+def _cut(row):
+    cut = cut_ratios.cut_of(row)
+    return "" if row is None else "-" if cut is None else f"{cut:.0f}"
+
+
+def partition_ratios(stored):
+    """Against METIS and SCOTCH."""
+    graphs = _graphs(stored)
+    found = {title: cut_ratios.ratios(graphs, name) for name, title in TIMED.items()}
+    lines = [[title, text.number(ratio.rows), f"{text.number(ratio.worst_rows)} ({ratio.worst_graph.replace('_', ' ')})",
+              text.number(ratio.speed), text.number(ratio.least_speed), text.number(ratio.growth)]
+             for title, ratio in found.items() if ratio]
+    least, most = cut_ratios.TIMED_BODIES
+    return (f"Against the best of METIS and SCOTCH, all strategies, ten seeds each ({stored.origin(SPEED[0])}); speed on graphs of {least} "
+            f"to {most} bodies:\n\n" +
+            text.table(["", "rows, geometric mean", "rows, worst graph", "times as fast as METIS recursive", "at least",
+                        "time a body, 100000 over 1000"], lines))
+
+
+def _karger_line(scene, cells):
+    def of(key):
+        return f"{cells[key].rows:.0f} / {text.number(cells[key].t_pr_ms)}"
+
+    needed = (karger_trials.trials_needed(cells, refiner) for refiner in karger_trials.REFINERS)
+    rivals_ms, karger_ms = karger_trials.lowest_totals(cells)
+    return [scene.replace("_", " ").title(), *(of(rival) for rival in karger_trials.RIVALS),
+            *(of((trials, "fm")) for trials in karger_trials.TRIALS),
+            *("more" if math.isinf(trials) else trials for trials in needed), text.number(rivals_ms), text.number(karger_ms)]
+
+
+def karger(stored):
+    rows = need(stored.table(*KARGER), "random contraction", "trials")
+    lines = [_karger_line(scene, karger_trials.cells_of(rows, scene)) for scene in dict.fromkeys(row["scene"] for row in rows)]
+    rivals = ["+".join(rival) for rival in karger_trials.RIVALS]
+    steps = len({row["step"] for row in rows})
+    return (f"Interface rows / t_pr in ms, means over {steps} recorded steps of a scene (`{KARGER[1]}`; {stored.origin(KARGER[0])}); then the "
+            f"least trials that cut no more rows than {rivals[0]}, and the lowest t_pr + t_s of {' and '.join(rivals)} and of karger with "
+            "any number of trials, one thread, `schur`, ms:\n\n" +
+            text.table(["scene", *rivals, *(f"karger+fm, {trials}" for trials in karger_trials.TRIALS),
+                        "trials needed, none", "trials needed, fm", "lowest total", "of karger"], lines))
+
+
+BLOCKS = {"ablation": ablation, "ablation_facts": ablation_facts, "partition_speed": partition_speed,
+          "partition_ratios": partition_ratios, "karger": karger}

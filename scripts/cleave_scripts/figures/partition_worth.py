@@ -1,0 +1,29 @@
+"""Speed-up against workers, each solver with its best partition, a panel a problem."""
+from cleave_scripts.figures import looks, style
+from cleave_scripts.measurements.partition_worth import NAMES, WORKERS
+
+IDEAL = {"color": "#BBBBBB", "linewidth": 3, "zorder": 1}
+
+
+def draw(problems):
+    figure, axes = style.panels(len(problems), 3, 2.0, sharex=True)
+    marks = looks.marks(NAMES)
+    for ax, problem in zip(axes, problems):
+        ax.plot(WORKERS, WORKERS, **IDEAL)
+        for solver, look in marks.items():
+            if (solver, 1) not in problem.best:
+                continue
+            ax.plot(WORKERS, [problem.speed_up(solver, workers) for workers in WORKERS], **look, markersize=3, linewidth=1)
+            if solver in problem.measured:
+                ax.plot(2, problem.base_ms / problem.measured[solver].time_ms, color=look["color"], marker=look["marker"],
+                        markersize=5.5, markeredgecolor=style.INK, markeredgewidth=0.7, zorder=5)
+        scene, bodies, cfm = problem.key
+        ax.set_title(f"{scene.replace('_', ' ')}, {bodies} bodies\n{problem.rows} rows, cfm {float(cfm):g}", fontsize=7.5)
+        ax.set(xscale="log", yscale="log", xlabel="workers", ylabel="speed-up")
+        ax.set_xticks(WORKERS, list(map(str, WORKERS)))
+        ax.set_ylim(0.04, 20)
+        ax.xaxis.set_minor_locator(style.matplotlib.ticker.NullLocator())
+        ax.yaxis.set_major_formatter(style.matplotlib.ticker.FuncFormatter(lambda value, _: style.short(value)))
+    lines = [style.matplotlib.lines.Line2D([], [], **look, markersize=4, label=NAMES[solver]) for solver, look in marks.items()]
+    style.legend_above(figure, [*lines, style.matplotlib.lines.Line2D([], [], **IDEAL, label="ideal")], columns=5)
+    return figure

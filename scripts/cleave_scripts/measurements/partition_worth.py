@@ -1,0 +1,62 @@
+"""What scripts/partition_worth measured: when a partition pays.
+
+The time of a cell is t_pr + t_s: on one thread and on two as measured, on more workers as modelled from the one-thread solve. Of
+every solver the fastest partition counts, for each number of workers anew. Speed-ups are against the fastest solver on one
+thread.
+"""
+import dataclasses
+
+KEY = ("scene", "bodies", "cfm")
+MODELLED = (2, 4, 8, 16, 32, 64)
+WORKERS = (1, *MODELLED)
+NAMES = {"auto:schur-rows": "schur-rows, the paper's", "auto:schur-bodies": "schur-bodies", "auto:schur-nested": "schur-nested",
+         "auto:monolithic": "whole system"}
+
+
+@dataclasses.dataclass(frozen=True)
+class Cell:
+    time_ms: float
+    partition: str  # "-" for the whole system
+
+
+@dataclasses.dataclass(frozen=True)
+class Problem:
+    key: tuple  # values of KEY
+    rows: int
+    best: dict  # {(solver, workers): Cell}, workers as modelled but for 1
+    measured: dict  # {solver: Cell} on two threads
+
+    @property
+    def base_ms(self):
+        return min(cell.time_ms for (_, workers), cell in self.best.items() if workers == 1)
+
+    def speed_up(self, solver, workers):
+        return self.base_ms / self.best[solver, workers].time_ms
+
+    def winner(self, workers):
+        return min((solver for solver, count in self.best if count == workers), key=lambda solver: self.best[solver, workers].time_ms)
+
+
+def _partition(row):
+    return "-" if row["partitioner"] == "-" else f"{row['partitioner']}+{row['refiner']}"
+
+
+def _least(cells, key, cell):
+    if key not in cells or cell.time_ms < cells[key].time_ms:
+        cells[key] = cell
+
+
+def problems(rows):
+    """[Problem], by rows."""
+    found = {}
+    for row in rows:
+        best, measured, count = found.setdefault(tuple(row[name] for name in KEY), ({}, {}, int(row["rows"])))[:3]
+        split_ms = 0 if row["partitioner"] == "-" else float(row["t_pr_ms"])
+        if int(row["threads"]) == 2:
+            _least(measured, row["solver"], Cell(split_ms + float(row["t_s_ms"]), _partition(row)))
+            continue
+        _least(best, (row["solver"], 1), Cell(split_ms + float(row["t_s_ms"]), _partition(row)))
+        for workers in MODELLED:
+            _least(best, (row["solver"], workers), Cell(split_ms + float(row[f"t_s_model_p{workers}_ms"]), _partition(row)))
+    return sorted((Problem(key, count, best, measured) for key, (best, measured, count) in found.items()),
+                  key=lambda problem: (problem.key[0], problem.rows, float(problem.key[2])))
