@@ -3,20 +3,22 @@
 namespace cleave {
 
 MoveSearch::MoveSearch(const BodyGraph& graph, EdgeWeight unit, int most_bodies, MoveKind kind,
-                       Partition& partition)
+                       Partition& partition, std::span<const char> stays)
     : graph_(graph),
       partition_(partition),
       most_bodies_(most_bodies),
       kind_(kind),
       gains_(graph, unit, partition.part_count),
       version_(graph.body_count(), 0),
+      stays_(stays.begin(), stays.end()),
       parked_(partition.part_count) {
+  stays_.resize(graph.body_count(), 0);
   restart();
 }
 
 void MoveSearch::restart() {
   bodies_ = part_sizes(partition_);
-  is_locked_.assign(graph_.body_count(), 0);
+  is_locked_ = stays_;
   for (std::vector<Exchange>& parked : parked_) parked.clear();
   moves_.clear();
   for (int i = 0; i < graph_.body_count(); ++i) push_moves(i);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "partition/gains.h"
@@ -18,13 +19,15 @@ enum class MoveKind { all, improving };
 
 class MoveSearch {
  public:
-  MoveSearch(const BodyGraph& graph, EdgeWeight unit, int most_bodies, MoveKind kind, Partition& partition);
+  // stays: (n) 1 for bodies that never move, or empty: all may.
+  MoveSearch(const BodyGraph& graph, EdgeWeight unit, int most_bodies, MoveKind kind, Partition& partition,
+             std::span<const char> stays = {});
 
   // The best allowed move (its tag is the search's own); none when there is none.
   std::optional<Exchange> find();
   void make(const Exchange& move);
   void lock(int body) { is_locked_[body] = 1; }
-  // Every body is free again, and the partition may have been changed.
+  // Every body that does not stay is free again, and the partition may have been changed.
   void restart();
 
  private:
@@ -39,6 +42,7 @@ class MoveSearch {
   MoveGains gains_;
   std::vector<int> bodies_;      // (parts)
   std::vector<int> version_;     // (n): moves pushed before the body's gains last changed are stale
+  std::vector<char> stays_;      // (n)
   std::vector<char> is_locked_;  // (n)
   std::vector<std::vector<Exchange>> parked_;  // (parts)
   ExchangeHeap moves_;

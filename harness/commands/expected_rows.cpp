@@ -90,6 +90,8 @@ ExpectedRows::ExpectedRows(const StoredManifest& manifest) {
   common_.repeat_count = integer_of(manifest, "repeats");
   common_.skip_small_islands = flag_of(manifest, "skip-small-islands");
   common_.session = flag_of(manifest, "session");
+  common_.repartition = manifest.option("repartition");
+  if (common_.repartition.empty()) common_.repartition = Repartition().text;  // record has no such option
   separate_ = common_.mode == "separate";
   add_combinations(manifest);
   if (is_replay_) {

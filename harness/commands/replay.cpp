@@ -52,8 +52,14 @@ std::vector<OptionValue> values_of(const ReplayOptions& options) {
   return values;
 }
 
-// Before anything is created. A session is of one simulation's steps, one after the other. What `all` stands for splits
-// every file.
+// The option for which files must be one simulation's steps, one after the other; empty: they may be any.
+std::string asks_for_series(const RunOptions& options) {
+  if (options.session) return "--session";
+  return options.repartition.kind == Repartition::Kind::always ? ""
+                                                               : "--repartition " + options.repartition.text;
+}
+
+// Before anything is created. What `all` stands for splits every file.
 void check_files(ReplayOptions& options) {
   std::string without_groups;
   std::string before;
@@ -61,9 +67,10 @@ void check_files(ReplayOptions& options) {
   for (const std::string& path : options.files) {
     const ProblemFile file = read_problem_file_aloud(path);
     const std::tuple now{file.scene, file.seed, file.problem.body_count(), file.step};
-    if (options.solve.session && !before.empty() && now != last)
-      throw std::invalid_argument("FILES: " + path + " is not the step after that of " + before +
-                                  ", which --session asks for");
+    if (const std::string option = asks_for_series(options.solve);
+        !option.empty() && !before.empty() && now != last)
+      throw std::invalid_argument("FILES: " + path + " is not the step after that of " + before + ", which " +
+                                  option + " asks for");
     if (!file.body_group) without_groups = path;
     before = path;
     last = now;
@@ -141,8 +148,8 @@ void store(const Combination& combination, const StepRecord& row, const Outcome&
                            outcome.solution.impulse,
                            outcome.verdict.velocity};
   if (!outcome.part_of_body.empty())
-    file.partitions[label] =
-        stored_partition(combination.split_setup(), outcome.part_of_body, outcome.parent_of_part);
+    file.partitions[label] = stored_partition(combination.split_setup(), outcome.part_of_body,
+                                              outcome.parent_of_part, outcome.origin);
 }
 
 class Replay {

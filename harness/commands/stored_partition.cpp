@@ -12,6 +12,7 @@ namespace {
 
 constexpr const char* kSkipSmallIslands = "skip_small_islands";
 constexpr const char* kArity = "arity";
+constexpr const char* kOrigin = "partition_origin";
 constexpr const char* kOfRefiner = "refiner_";
 constexpr Range kArities{2, std::numeric_limits<double>::infinity()};
 
@@ -57,7 +58,7 @@ Algorithm read_stored(const StoredPartition& partition, const std::string& optio
 }  // namespace
 
 StoredPartition stored_partition(const SplitSetup& setup, std::vector<int> part_of_body,
-                                 std::vector<int> parent_of_part) {
+                                 std::vector<int> parent_of_part, PartitionOrigin origin) {
   StoredPartition stored{
       setup.partitioner.text, setup.refiner.text, {}, std::move(part_of_body), std::move(parent_of_part)};
   add_parameters("partitioner", setup.partitioner, "", stored.parameters);
@@ -66,7 +67,19 @@ StoredPartition stored_partition(const SplitSetup& setup, std::vector<int> part_
       {kSkipSmallIslands, Parameter::Kind::flag, setup.skip_small_islands ? "true" : "false"});
   if (setup.arity)
     stored.parameters.push_back({kArity, Parameter::Kind::integer, std::to_string(*setup.arity)});
+  if (origin != PartitionOrigin::fresh)
+    stored.parameters.push_back({kOrigin, Parameter::Kind::word, to_string(origin)});
   return stored;
+}
+
+PartitionOrigin read_origin(const StoredPartition& partition) {
+  const StoredParameter* stored = find_stored(partition, kOrigin);
+  if (stored == nullptr) return PartitionOrigin::fresh;
+  const std::optional<PartitionOrigin> origin = find_origin(stored->text);
+  if (!origin)
+    throw std::invalid_argument(std::string(kOrigin) + " = " + stored->text +
+                                ", allowed: fresh, repaired, kept");
+  return *origin;
 }
 
 Algorithm read_stored_refiner(const StoredPartition& partition) {

@@ -9,9 +9,12 @@
 
 namespace cleave {
 
-// With every parameter that shaped it.
+// With every parameter that shaped it, and where it is not fresh, its origin.
 StoredPartition stored_partition(const SplitSetup& setup, std::vector<int> part_of_body,
-                                 std::vector<int> parent_of_part);
+                                 std::vector<int> parent_of_part, PartitionOrigin origin);
+
+// Throws std::invalid_argument for a word that is none.
+PartitionOrigin read_origin(const StoredPartition& partition);
 
 // Throws std::invalid_argument with one line: an algorithm that is none of ours, a parameter that is missing,
 // of another type or outside its range.

@@ -86,10 +86,26 @@ void check_outside_parts(const StoredPartition& partition, const std::string& co
   list.add(found == fingerprint, subject, "part ids have the fingerprint " + found + " of their file");
 }
 
+// Parts that hang on the steps before, which no file holds, are counted only. Whether there are such.
+bool check_history(const StoredPartition& partition, const std::string& counted, const std::string& subject,
+                   CheckList& list) {
+  std::string origin, error;
+  try {
+    origin = to_string(read_origin(partition));
+  } catch (const std::invalid_argument& wrong) {
+    error = wrong.what();
+  }
+  if (origin == to_string(PartitionOrigin::fresh)) return false;
+  list.add(error.empty(), subject,
+           counted + "; " + (error.empty() ? origin + " from the step before" : error));
+  return true;
+}
+
 void check_split(const ProblemFile& file, const StoredPartition& partition, const std::string& subject,
                  CheckList& list) {
   const std::string counted =
       metrics_text(measure_partition(body_graph_of(file.problem), partition.part_of_body));
+  if (check_history(partition, counted, subject, list)) return;
   if (content_of("partitioner", algorithm_name(partition.partitioner)) != nullptr)
     return check_outside_parts(partition, counted, subject, list);
   const auto not_again = [&](const std::exception& error) {

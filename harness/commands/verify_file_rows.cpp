@@ -128,6 +128,7 @@ void check_grown(const ProblemFile& file, const StoredPartition& partition, Step
                  RowCheck& check) {
   if (content_of("partitioner", algorithm_name(partition.partitioner)) != nullptr) return;
   try {
+    if (read_origin(partition) != PartitionOrigin::fresh) return;
     const Split split = Splitter(read_split_setup(partition))
                             .run(file.problem, file.step, {known_positions(file), known_groups(file)});
     found.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
@@ -137,6 +138,15 @@ void check_grown(const ProblemFile& file, const StoredPartition& partition, Step
     return;
   }
   check.same_cells(found, kGrownColumns);
+}
+
+// A word that is none is named by the check of the file.
+void check_origin(const StoredPartition& partition, RowCheck& check) {
+  try {
+    check.same_text("partition_origin", to_string(read_origin(partition)));
+  } catch (const std::invalid_argument&) {
+    check.same_text("partition_origin", "a word that is none");
+  }
 }
 
 // Six for each body of the cover that schur-bodies takes.
@@ -174,6 +184,7 @@ void check_solved_row(const ProblemFile& file, const std::string& label, const s
     found.set_partition(measure_partition(body_graph_of(file.problem), parts));
     check.same_cells(found, kPartitionColumns);
     check_grown(file, partition->second, found, check);
+    check_origin(partition->second, check);
     // A solver that says schur-rows and works on something else is found out by its interface.
     if (solution.kernel == "schur-rows")
       check.same_text("interface_unknowns", std::to_string(found.interface_rows));

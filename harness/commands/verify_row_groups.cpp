@@ -63,7 +63,7 @@ void check_rows_of_problems(const StepsTable& table, const ExpectedRows& expecte
                       "interface_bodies_before", "contiguous_before"},
                      "grown alike");
   EqualInGroup refined({"parts", "max_part_bodies", "cut_pairs", "interface_rows", "interface_bodies",
-                        "interface_cover_bodies", "contiguous", "part_mass_ratio_max"},
+                        "interface_cover_bodies", "contiguous", "part_mass_ratio_max", "partition_origin"},
                        "refined alike");
   Findings findings;
   const std::size_t rows = expected.is_separate() ? 0 : std::min(table.row_count(), expected.count());
@@ -73,7 +73,9 @@ void check_rows_of_problems(const StepsTable& table, const ExpectedRows& expecte
     const std::string arity = " " + arity_cell(table, row);
     problem.add(table, row, of, findings);
     if (has_result(table.cell(row, "status"))) solved.add(table, row, of, findings);
-    grown.add(table, row, of + " " + table.cell(row, "partitioner") + arity, findings);
+    // Taken over, parts are those that were refined in the step before.
+    if (table.cell(row, "partition_origin") == "fresh" || table.cell(row, "partition_origin") == "-")
+      grown.add(table, row, of + " " + table.cell(row, "partitioner") + arity, findings);
     refined.add(table, row, of + " " + pair + arity, findings);
   }
   list.add(findings.none(), subject, "rows of a problem agree about it" + findings.text());

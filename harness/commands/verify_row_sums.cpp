@@ -10,6 +10,7 @@
 
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
+#include "harness/experiment/splitter.h"
 #include "harness/experiment/step_record.h"
 #include "solver/step_problem.h"
 
@@ -98,21 +99,32 @@ class RowAlone {
       for (const std::string& column : both)
         for (const std::string& counted : {column, column + "_before"}) require_equal(counted, -1);
       require_equal("interface_cover_bodies", -1);
+      require(text("partition_origin") == "-", "partition_origin", "- where nothing is split");
       for (const char* column :
            {"part_mass_ratio_max", "t_graph_ms", "t_partition_ms", "t_refine_ms", "t_pr_ms"})
         require_equal(column, kUnmeasured);
     }
     if (number("parts") <= 0) return;
-    if (text("refiner") == "none")
+    check_origin();
+    // What is repaired is moved without a refiner, and what is kept is not moved.
+    const std::string& origin = text("partition_origin");
+    if (origin == "kept" || (origin != "repaired" && text("refiner") == "none"))
       for (const std::string& column : both) require_equal(column + "_before", number(column));
     if (text("kernel") == "schur-rows") require_equal("interface_unknowns", number("interface_rows"));
     // The solver's cover is a least one where the cut pairs form a bipartite graph, the counted one is greedy. An analysis
     // that is kept keeps its cover, of a step that had other cut pairs.
     if (text("kernel") == "schur-bodies" && text("reuse_analysis") != "1" && number("session") != 1) {
       const double unknowns = number("interface_unknowns"), most = 6 * number("interface_cover_bodies");
-      require(unknowns <= most && std::fmod(unknowns, 6) == 0 && (unknowns > 0) == (most > 0), "interface_unknowns",
-              "a multiple of 6, at most " + number_text(most));
+      require(unknowns <= most && std::fmod(unknowns, 6) == 0 && (unknowns > 0) == (most > 0),
+              "interface_unknowns", "a multiple of 6, at most " + number_text(most));
     }
+  }
+
+  void check_origin() {
+    const bool anew = text("repartition") == "always" || text("repartition") == "every:1";
+    const std::string& origin = text("partition_origin");
+    require(anew ? origin == "fresh" : find_origin(origin).has_value(), "partition_origin",
+            anew ? "fresh, as repartition is " + text("repartition") : "fresh, repaired, kept");
   }
 
   void check_times() {

@@ -68,6 +68,7 @@ void set_split(const Repeats& repeats, StepRecord& row) {
   const Split& split = *repeats.front().split;
   row.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
   row.set_partition(measure_partition(split.graph, split.parts.part_of_body));
+  row.partition_origin = to_string(split.origin);
   row.t_graph_ms = median(repeats, [](const auto& repeat) { return repeat.split->graph_ms; });
   row.t_partition_ms = median(repeats, [](const auto& repeat) { return repeat.split->partition_ms; });
   row.t_refine_ms = median(repeats, [](const auto& repeat) { return repeat.split->refine_ms; });
@@ -103,7 +104,8 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
                      .dispatch = dispatch_cost(),
                      .memory_limit_bytes = options.memory_limit_bytes},
       context_(&context),
-      solver_(make_solver(solver, solve_options_, context)) {
+      solver_(make_solver(solver, solve_options_, context)),
+      keeper_(options.repartition) {
   if (solver_->uses_partition()) {
     setup_ = {partitioner, refiner, options.skip_small_islands, arity_of(solver)};
     splitter_.emplace(setup_);
@@ -114,7 +116,28 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
 
 std::optional<Split> Combination::split(const StepProblem& problem, int step) const {
   if (!splitter_) return std::nullopt;
-  return splitter_->run(problem, step, {context_->position_m, context_->body_group});
+  return keeper_.run(*splitter_, problem, step, {context_->position_m, context_->body_group});
+}
+
+// Once a step, after all repeats: each of them begins from the step before.
+void Combination::remember(const std::optional<Split>& split) {
+  if (split) {
+    keeper_.remember(*splitter_, *split);
+  } else {
+    keeper_.forget();
+  }
+}
+
+void Combination::follow(const StepProblem& problem, int step) {
+  if (!keeper_.keeps()) return;
+  check_stop(solve_options_.stop);
+  std::optional<Split> parts;
+  try {
+    parts = split(problem, step);
+  } catch (const CannotSplit&) {
+    // As after a refused solve, the next step is split anew.
+  }
+  remember(parts);
 }
 
 Combination::Repeat Combination::repeat(const StepProblem& problem, int step) {
@@ -151,9 +174,10 @@ void Combination::set_names(StepRecord& row) const {
 }
 
 Outcome Combination::solve(const StepProblem& problem, int step) {
-  Outcome outcome = repeat(problem, step).outcome;
-  judge_outcome(problem, outcome);
-  return outcome;
+  Repeat solved = repeat(problem, step);
+  remember(solved.split);
+  judge_outcome(problem, solved.outcome);
+  return std::move(solved.outcome);
 }
 
 Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
@@ -169,6 +193,7 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   const bool failed = !repeats.back().outcome.solved();
   Repeat& chosen = failed ? repeats.back() : repeats[median_index(repeats, total_ms)];
   judge_outcome(problem, chosen.outcome);
+  remember(repeats.front().split);
 
   set_names(row);
   row.repeat_count = static_cast<int>(repeats.size());
@@ -181,6 +206,7 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   if (chosen.split) {
     chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
     chosen.outcome.parent_of_part = chosen.split->parent_of_part;
+    chosen.outcome.origin = chosen.split->origin;
   }
   if (chosen.outcome.solved())
     set_measures(problem, chosen.split ? &chosen.split->graph : nullptr, chosen.outcome, row);
@@ -242,8 +268,9 @@ std::vector<Outcome> measure_all(std::span<Combination> combinations, const Step
   return outcomes;
 }
 
-RunOptions without_session(RunOptions options) {
+RunOptions without_history(RunOptions options) {
   options.session = false;
+  options.repartition = {};
   return options;
 }
 
@@ -252,7 +279,7 @@ Combination make_advancing_combination(const RunOptions& options, const StepCont
   return {options.partitioners.front(),
           options.refiners.front(),
           options.advance,
-          without_session(options),
+          without_history(options),
           context,
           stop};
 }

@@ -15,6 +15,7 @@
 #include "harness/experiment/core_meter.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/options.h"
+#include "harness/experiment/partition_keeper.h"
 #include "harness/experiment/splitter.h"
 #include "harness/experiment/step_record.h"
 #include "solver/residual.h"
@@ -40,6 +41,7 @@ struct Outcome {
   Solution solution;
   std::vector<int> part_of_body;    // (n) what `measure` split the bodies into; empty where parts are ignored
   std::vector<int> parent_of_part;  // the tree of these parts; empty: one level
+  PartitionOrigin origin = PartitionOrigin::fresh;
   ResidualReport verdict;
   bool finite = false;  // impulses and velocities are numbers
 
@@ -68,6 +70,9 @@ class Combination {
   // this step makes the outcome `refused`, a lack of memory `out_of_memory`; the next solve begins afresh.
   Outcome solve(const StepProblem& problem, int step);
 
+  // Splits without solving, for what the partition of the next step is made from. Does nothing where every step is split anew.
+  void follow(const StepProblem& problem, int step);
+
   // Splits and solves options.repeats times from the problem's warm start, at the row's step, and fills the
   // row's columns of partition, solve, times and verdict. The stage times are those of the solve with the
   // median time, so that they add up.
@@ -83,6 +88,7 @@ class Combination {
     Outcome outcome;
   };
   std::optional<Split> split(const StepProblem& problem, int step) const;
+  void remember(const std::optional<Split>& split);
   Repeat repeat(const StepProblem& problem, int step);
   void solve_parts(const StepProblem& problem, const Parts& parts, Outcome& outcome);
 
@@ -94,6 +100,7 @@ class Combination {
   const StepContext* context_;
   std::unique_ptr<StepSolver> solver_;  // none after a solve without memory: the next one makes it anew
   std::optional<Splitter> splitter_;
+  PartitionKeeper keeper_;
 };
 
 // All combinations of a run in the order of its rows: partitioner, then refiner, then solver; solvers that
@@ -110,8 +117,8 @@ std::vector<CombinationName> combination_names(const RunOptions& options);
 std::vector<Outcome> measure_all(std::span<Combination> combinations, const StepProblem& problem, int turn,
                                  std::span<StepRecord> rows);
 
-// What advances a world is in no session, so that the world goes the same way with one and without.
-RunOptions without_session(RunOptions options);
+// What advances a world knows no step before, so that the world goes the same way whatever combinations remember.
+RunOptions without_history(RunOptions options);
 
 // The solver of --advance. Where it needs parts it gets those of the run's first partitioner and refiner.
 Combination make_advancing_combination(const RunOptions& options, const StepContext& context,

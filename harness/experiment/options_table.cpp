@@ -120,6 +120,20 @@ OptionSpec word(const Row& row, std::vector<std::string> words, std::string help
       [=](const RunOptions& o) { return words.at(static_cast<std::size_t>(member(o))); });
 }
 
+OptionSpec repartition() {
+  return spec(
+      {"repartition", About::partition, kRunAndReplay}, Kind::text, "always|on-change|every:K|drift:X",
+      "new parts in every step, or those of the step before, repaired where bodies or adjacent pairs "
+      "changed: throughout, with "
+      "new ones every K steps, or until the share of rows that is cut exceeds (1 + X) times that of the last "
+      "new ones; with "
+      "and without --session",
+      [](RunOptions& o, const std::string& value) {
+        o.repartition = read_repartition("--repartition", value);
+      },
+      [](const RunOptions& o) { return o.repartition.text; });
+}
+
 OptionSpec seed() {
   return spec(
       {"seed", About::bookkeeping, kWithWorld}, Kind::number, "N",
@@ -158,6 +172,7 @@ std::vector<OptionSpec> experiment_options() {
       flag({"session", About::solver, kRunAndReplay},
            "solve every step, each from what the one before left: analysis, active set and factor",
            at(&RunOptions::session)),
+      repartition(),
       integer({"threads", kAbout, kEverywhere, kChangesNoRow}, {1, 1024}, "threads of a solve",
               at(&RunOptions::threads)),
       number({"memory-limit", kAbout, kEverywhere, kChangesNoRow}, kPositive,

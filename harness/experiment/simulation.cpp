@@ -79,6 +79,8 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
       measured = measure(combinations, problem, common);
     } else if (options_.session) {
       for (Combination& combination : combinations) combination.solve(problem, step);
+    } else {
+      for (Combination& combination : combinations) combination.follow(problem, step);
     }
 
     // One solution moves the bodies, and its impulses are where the next step starts from.
@@ -127,7 +129,7 @@ void Simulation::run_worlds(const RowSink& write, const Progress& progress) {
     run_world(combinations_, advancing, write, progress);
   } else {
     // Equal solvers that advance: one does not see what the other keeps in its scratch.
-    std::vector<Combination> advancing = make_combinations(without_session(options_), context_, &stop_);
+    std::vector<Combination> advancing = make_combinations(without_history(options_), context_, &stop_);
     for (std::size_t i = 0; i < combinations_.size(); ++i)
       run_world({&combinations_[i], 1}, advancing[i], write, progress);
   }

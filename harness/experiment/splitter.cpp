@@ -1,13 +1,21 @@
 #include "harness/experiment/splitter.h"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
+#include <string_view>
 
 #include "harness/base/stopwatch.h"
 #include "harness/experiment/small_islands.h"
 #include "partition/registry.h"
 
 namespace cleave {
+namespace {
+
+// In the order of PartitionOrigin.
+constexpr std::string_view kOriginNames[] = {"fresh", "repaired", "kept"};
+
+}  // namespace
 
 std::optional<int> arity_of(const Algorithm& solver) {
   return solver.settings.has("arity") ? std::optional(solver.settings.integer("arity")) : std::nullopt;
@@ -77,12 +85,26 @@ Split Splitter::run(const StepProblem& problem, std::optional<int> step, const K
   Stopwatch watch;
   split.graph = body_graph_of(problem, step, known);
   split.graph_ms = watch.lap_ms();
+  run(split);
+  return split;
+}
+
+void Splitter::run(Split& split) const {
   if (set_splitter_) {
     run_recursion(split);
   } else {
     run_once(split);
   }
-  return split;
+}
+
+std::string to_string(PartitionOrigin origin) {
+  return std::string(kOriginNames[static_cast<std::size_t>(origin)]);
+}
+
+std::optional<PartitionOrigin> find_origin(const std::string& text) {
+  const auto found = std::ranges::find(kOriginNames, text);
+  if (found == std::end(kOriginNames)) return std::nullopt;
+  return static_cast<PartitionOrigin>(found - std::begin(kOriginNames));
 }
 
 }  // namespace cleave

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "harness/base/algorithm.h"
@@ -18,13 +19,19 @@
 
 namespace cleave {
 
+// Where the parts of a step come from: made for it, repaired or unchanged from those of the step before.
+enum class PartitionOrigin { fresh, repaired, kept };
+std::string to_string(PartitionOrigin origin);
+std::optional<PartitionOrigin> find_origin(const std::string& text);
+
 struct Split {
   BodyGraph graph;
-  Partition before;                 // as grown; by recursion, what it gives without refinement
-  Partition parts;                  // as refined; the leaves of a tree
+  Partition before;  // as grown; by recursion, what it gives without refinement; repaired, before the moves
+  Partition parts;   // as refined; the leaves of a tree
   std::vector<int> parent_of_part;  // the tree (solver/parts.h); empty: one level
   // By recursion sums over all sets; whatever is not refining counts as partitioning.
   double graph_ms = 0, partition_ms = 0, refine_ms = 0;
+  PartitionOrigin origin = PartitionOrigin::fresh;
 };
 
 // How bodies are split.
@@ -47,12 +54,17 @@ class Splitter {
   Split run(const StepProblem& problem, std::optional<int> step = std::nullopt,
             const KnownBodies& known = {}) const;
 
+  // The same of a graph that is there already.
+  void run(Split& split) const;
+
+  // max-bodies of the partitioner, or the size of the largest part where it has none.
+  int most_bodies(const Partition& grown) const;
+
  private:
   void run_once(Split& split) const;
   void run_recursion(Split& split) const;
   NestedPartition nest(const BodyGraph& graph, bool refines, double& refine_ms) const;
   Partition grow(const BodyGraph& graph) const;
-  int most_bodies(const Partition& grown) const;
 
   std::unique_ptr<Partitioner> partitioner_;
   std::unique_ptr<Refiner> refiner_;

@@ -43,6 +43,7 @@ StepRecord solve_columns(const RunOptions& options) {
   row.threads = options.threads;
   row.skip_small_islands = options.skip_small_islands;
   row.session = options.session;
+  row.repartition = options.repartition.text;
   return row;
 }
 

@@ -108,7 +108,7 @@ struct StepRecord {
   double gravity_m_per_s2 = kUnmeasured, match_tolerance = kUnmeasured;
   int contact_cap = -1;
   int skip_small_islands = -1, cold = -1, session = -1;
-  std::string mode = "-", advance = "-";
+  std::string mode = "-", advance = "-", repartition = "-", partition_origin = "-";
   int steps = -1;
   std::string scene_options = "-";
   std::string schema_version = kStepsSchema;
@@ -295,6 +295,9 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit("factor_mflop_done", r.factor_mflop_done,
         "Mflop of all factorisations of the solve, less what was kept of the one before");
   visit_parameters(ParameterColumn::Place::last);
+  visit("repartition", r.repartition, "when steps are split anew, as given", About::partition);
+  visit("partition_origin", r.partition_origin,
+        "fresh, repaired or kept: where the parts of the step come from");
 }
 
 // "run_id,scene,...\n"

@@ -305,6 +305,7 @@ TEST_F(Verify, FindsAChangeOfEveryCellOfTheOptions) {
                                                                     {"merge_small", "1"},
                                                                     {"cold", "1"},
                                                                     {"session", "1"},
+                                                                    {"repartition", "on-change"},
                                                                     {"mode", "lockstep"},
                                                                     {"steps", "3"},
                                                                     {"schema_version", "other"},
