@@ -17,9 +17,9 @@ Arguments operator+(Arguments a, const Arguments& b) {
   return a;
 }
 
-const Arguments kPile = {"run",          "--scene",   "rock_pile", "--bodies", "30",
-                         "--max-bodies", "6",         "--repeats", "2",        "--partitioner",
-                         "mix",          "--refiner", "none,fm",   "--solver", "schur,monolithic"};
+const Arguments kPile = {"run",          "--scene",  "rock_pile",       "--bodies", "30",
+                         "--max-bodies", "6",        "--partitioner",   "mix",      "--refiner",
+                         "none,fm",      "--solver", "schur,monolithic"};
 
 CsvTable rows_of(const Arguments& more, const std::filesystem::path& out) {
   const ProgramResult result = run_cleave(kPile + more + Arguments{"--out", out});
@@ -31,8 +31,10 @@ CsvTable rows_of(const Arguments& more, const std::filesystem::path& out) {
 
 TEST(Repartition, TheWorldGoesTheSameWayAndRunsRepeat) {
   const TemporaryDirectory directory;
-  const CsvTable anew = rows_of({"--steps", "60", "--measure-every", "10"}, directory / "anew");
-  const Arguments kept = {"--steps", "60", "--measure-every", "10", "--repartition", "on-change"};
+  const CsvTable anew =
+      rows_of({"--steps", "60", "--measure-every", "10", "--repeats", "2"}, directory / "anew");
+  const Arguments kept = {"--steps",   "60", "--measure-every", "10",
+                          "--repeats", "2",  "--repartition",   "on-change"};
   const CsvTable one = rows_of(kept, directory / "one"), two = rows_of(kept, directory / "two");
   EXPECT_EQ(one.column("state_hash"), anew.column("state_hash"));
   EXPECT_EQ(one.column("solution_hash"), two.column("solution_hash"));
@@ -44,11 +46,11 @@ TEST(Repartition, TheWorldGoesTheSameWayAndRunsRepeat) {
 // What a measured row says depends on the steps before, measured or not.
 TEST(Repartition, EveryStepIsFollowed) {
   const TemporaryDirectory directory;
-  const Arguments rule = {"--steps", "40", "--repartition", "drift:0.1"};
+  const Arguments rule = {"--steps", "40", "--repeats", "1", "--repartition", "drift:0.1"};
   const CsvTable often = rows_of(rule + Arguments{"--measure-every", "1"}, directory / "often");
   const CsvTable seldom = rows_of(rule + Arguments{"--measure-every", "40"}, directory / "seldom");
-  const CsvTable session = rows_of(rule + Arguments{"--measure-every", "40", "--repeats", "1", "--session"},
-                                   directory / "session");
+  const CsvTable session =
+      rows_of(rule + Arguments{"--measure-every", "40", "--session"}, directory / "session");
   for (std::size_t row = 0; row < 2; ++row)
     for (const char* column : {"partition_origin", "interface_rows", "parts"}) {
       EXPECT_EQ(seldom.at(row, column), often.at(39 * 3 + row, column)) << column;
@@ -58,7 +60,8 @@ TEST(Repartition, EveryStepIsFollowed) {
 
 TEST(Repartition, IsNewEveryKSteps) {
   const TemporaryDirectory directory;
-  const CsvTable rows = rows_of({"--steps", "12", "--repartition", "every:4"}, directory / "out");
+  const CsvTable rows =
+      rows_of({"--steps", "12", "--repeats", "2", "--repartition", "every:4"}, directory / "out");
   for (std::size_t row = 0; row < rows.rows.size(); ++row)
     if (rows.at(row, "partitioner") != "-")
       EXPECT_EQ(rows.at(row, "partition_origin") == "fresh", row / 3 % 4 == 0) << "row " << row;

@@ -260,6 +260,7 @@ const std::vector<std::string> kComparedColumns = {
     "interface_rows_before",
     "interface_bodies_before",
     "contiguous_before",
+    "partition_origin",
     "residual_m_per_s",
     "residual_bilateral_m_per_s",
     "residual_normal_m_per_s",
@@ -465,6 +466,10 @@ const std::vector<Breakage> kBreakages = {
      [](ProblemFile& f) { f.partitions["mindp+kl+schur"] = f.partitions.at(kLabel); }},
     {"part ids", "part_of_body[3] = 20",
      [](ProblemFile& f) { f.partitions.at(kLabel).part_of_body[3] = 20; }},
+    {"parts taken over", "partition_origin = made up, allowed: fresh, repaired, kept",
+     [](ProblemFile& f) {
+       f.partitions.at(kLabel).parameters.push_back({"partition_origin", Parameter::Kind::word, "made up"});
+     }},
     {"can be split again", "cannot be split again: --partitioner: 'mindq'",
      [](ProblemFile& f) { f.partitions.at(kLabel).partitioner = "mindq"; }},
     {"split again", "split again, 1 bodies differ",
