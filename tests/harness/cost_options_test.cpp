@@ -117,23 +117,32 @@ TEST(CostOptions, TheObjectiveReplacesTheRefiner) {
   EXPECT_EQ(replaced.exit_code, 0) << replaced.err;
 }
 
-// What was chosen is stored with the parts, so that each file is verified alone.
+// What was chosen is stored with the parts, so that each file is verified alone; parts that are taken over keep it.
 TEST(CostOptions, StoredPartsOfAutoAreMadeAgain) {
   const TemporaryDirectory directory;
-  ASSERT_EQ(
-      run_cleave({"record", "--scene", "log_tower", "--at", "1,40", "--out", directory / "made"}).exit_code,
-      0);
-  const ProgramResult replayed = run_cleave(
-      {"replay", directory / "made/log_tower_step000001.h5", directory / "made/log_tower_step000040.h5",
-       "--write-solutions", "--partitioner", "auto", "--refiner", "none", "--solver", "schur", "--repeats",
-       "1", "--repartition", "on-change", "--out", directory / "replayed"});
-  ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
-  const CsvTable rows = read_csv(directory / "replayed/steps.csv");
-  ASSERT_EQ(rows.rows.size(), 2u);
-  EXPECT_NE(rows.at(0, "auto_choice"), "-");
-  EXPECT_NE(rows.at(1, "auto_choice"), "-");
-  const ProgramResult verified = run_cleave({"verify", directory / "replayed"});
-  EXPECT_EQ(verified.exit_code, 0) << verified.out;
+  const Arguments record = {"record", "--scene", "rock_pile",  "--bodies",
+                            "60",     "--at",    "70,150,151", "--out"};
+  ASSERT_EQ(run_cleave(record + Arguments{directory / "made"}).exit_code, 0);
+  const auto replay = [&](const Arguments& steps, const Arguments& more) {
+    Arguments words = {
+        "replay", "--write-solutions", "--partitioner", "auto", "--refiner", "none", "--repeats",
+        "1",      "--solver",          "schur"};
+    for (const std::string& step : steps)
+      words.push_back(directory / ("made/rock_pile_step000" + step + ".h5"));
+    const std::string out = directory / ("replayed" + steps.back());
+    const ProgramResult replayed = run_cleave(words + more + Arguments{"--out", out});
+    EXPECT_EQ(replayed.exit_code, 0) << replayed.err;
+    const ProgramResult verified = run_cleave({"verify", out});
+    EXPECT_EQ(verified.exit_code, 0) << verified.out;
+    return read_csv(out + "/steps.csv");
+  };
+  const CsvTable anew = replay({"070", "150"}, {});
+  EXPECT_NE(anew.at(0, "auto_choice"), "-");
+  EXPECT_NE(anew.at(1, "auto_choice"), "-");
+  const CsvTable kept = replay({"150", "151"}, {"--repartition", "on-change"});
+  EXPECT_EQ(kept.at(0, "partition_origin"), "fresh");
+  EXPECT_NE(kept.at(1, "partition_origin"), "fresh");
+  EXPECT_EQ(kept.at(1, "auto_choice"), kept.at(0, "auto_choice"));
 }
 
 }  // namespace
