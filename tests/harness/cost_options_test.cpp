@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/commands/stored_partition.h"
+#include "harness/experiment/algorithms.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -143,6 +145,19 @@ TEST(CostOptions, StoredPartsOfAutoAreMadeAgain) {
   EXPECT_EQ(kept.at(0, "partition_origin"), "fresh");
   EXPECT_NE(kept.at(1, "partition_origin"), "fresh");
   EXPECT_EQ(kept.at(1, "auto_choice"), kept.at(0, "auto_choice"));
+}
+
+TEST(CostOptions, AStoredChoiceIsReadAndKeptTo) {
+  SplitSetup setup{read_named("partitioner", "auto"), read_named("refiner", "none")};
+  setup.choice = "mix@max-bodies=50+fm/schur-rows";
+  StoredPartition stored = stored_partition(setup, {0, 0, 1}, {}, PartitionOrigin::fresh);
+  EXPECT_EQ(read_split_setup(stored).choice, setup.choice);
+  Split split;
+  split.graph = BodyGraph(std::vector(3, 1.0), std::vector<ConstraintLink>{{0, 1, 3}});
+  Splitter(read_split_setup(stored)).run(split);
+  EXPECT_EQ(split.parts.choice, setup.choice);
+  setup.choice = "mix@max-bodies=51+fm/schur-rows";
+  EXPECT_THROW(Splitter{setup}, std::invalid_argument);
 }
 
 }  // namespace
