@@ -16,7 +16,7 @@ struct PartitionerEntry : AlgorithmEntry {
   PartsPromise promise;
   bool of_paper;  // one of Liu & Andrews 2022: what --partitioner paper names
   std::unique_ptr<Partitioner> (*make)(const Settings& settings);  // null: unavailable
-  bool needs_groups = false;  // of bodies, which not every scene names
+  bool needs_groups = false;                                       // of bodies, which not every scene names
 };
 
 struct RefinerEntry : AlgorithmEntry {

@@ -150,8 +150,8 @@ void store(const Combination& combination, const StepRecord& row, const Outcome&
   if (outcome.part_of_body.empty()) return;
   SplitSetup setup = combination.split_setup();
   setup.choice = outcome.choice;
-  file.partitions[label] = stored_partition(setup, outcome.part_of_body, outcome.parent_of_part,
-                                            outcome.origin);
+  file.partitions[label] =
+      stored_partition(setup, outcome.part_of_body, outcome.parent_of_part, outcome.origin);
 }
 
 class Replay {

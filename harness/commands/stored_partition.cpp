@@ -70,8 +70,7 @@ StoredPartition stored_partition(const SplitSetup& setup, std::vector<int> part_
     stored.parameters.push_back({kArity, Parameter::Kind::integer, std::to_string(*setup.arity)});
   if (origin != PartitionOrigin::fresh)
     stored.parameters.push_back({kOrigin, Parameter::Kind::word, to_string(origin)});
-  if (!setup.choice.empty())
-    stored.parameters.push_back({kChoice, Parameter::Kind::word, setup.choice});
+  if (!setup.choice.empty()) stored.parameters.push_back({kChoice, Parameter::Kind::word, setup.choice});
   return stored;
 }
 
