@@ -73,6 +73,7 @@ COMMANDS = {
     "ladder": Command({"--full": "", "--rung": "rungs", "--solver": "climbers", "--steps": "count", "--timeout": "seconds",
                        "--jobs": "count", **MEASURED}, runs=True),
     "modelled_workers": Command({"--rounds": "count", **MEASURED}, runs=True),
+    "partition_over_time": Command({"--steps": "count", **MEASURED}, runs=True),
     "partition_regret": Command({"--rounds": "count", "--threads": "count", **MEASURED}, runs=True),
     "partition_worth": Command({"--repeats": "count", **MEASURED}, runs=True),
     "readme_figures": Command(MEASURED, ("{tree}",), ("{tree}",)),

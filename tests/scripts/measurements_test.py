@@ -9,7 +9,7 @@ import unittest.mock
 from stand_in import StandInCase
 from synthetic import ROOT
 
-from cleave_scripts.documents import cuts, speed
+from cleave_scripts.documents import cuts, speed, worth
 from cleave_scripts.documents.stored import Stored
 from cleave_scripts.measurements import dense_ratios, modelled_times, partition_worth
 from cleave_scripts.results.paper import COMBINATIONS
@@ -31,6 +31,12 @@ if words[0] == "record":
     scene, steps = words[words.index("--scene") + 1], words[words.index("--at") + 1]
     for step in steps.split(","):
         (out / f"{{scene}}_step{{int(step):06}}.h5").write_text(" ".join(words))
+    sys.exit(0)
+if words[0] == "run":
+    given = dict(zip(words, words[1:]))
+    write_steps(out, [dict(scene=given["--scene"], bodies=600, step=step, partitioner=given["--partitioner"], refiner=given["--refiner"],
+                           repartition=given["--repartition"], partition_origin="fresh", rows=1200 * step, interface_rows=40, parts=5,
+                           t_pr_ms=0.1, t_s_ms=8) for step in range(int(given["--steps"]))])
     sys.exit(0)
 files = [word for word in words if word.endswith(".h5")]
 assert files and all(os.path.exists(file) for file in files), files
@@ -231,6 +237,20 @@ class KargerTest(Measurement):
         self.assertFalse((self.directory / "out").exists())
 
 
+class PartitionOverTimeTest(Measurement):
+    script = "partition_over_time"
+
+    def test_every_scene_meets_every_rule(self):
+        self.run_it("--steps", 5)
+        calls = self.calls()
+        self.assertEqual(len(calls), 4 * 2 * 6)
+        self.assertIn("--repartition drift:0.2", calls[-1])
+        self.assertEqual(len(self.rows("partition_over_time.csv")), len(calls) * 4)  # the first step has no constraint
+
+    def test_options(self):
+        self.check_least("--steps", 1)
+
+
 class PartitionWorthTest(Measurement):
     script = "partition_worth"
 
@@ -239,6 +259,8 @@ class PartitionWorthTest(Measurement):
         self.assertEqual(len(self.calls()), 9 * (1 + 2 * 2))
         self.assertEqual(len(self.rows("partition_worth.csv")), 9 * 2 * (3 * 15 + 10))
         self.assertTrue((self.directory / "out" / "partition_worth.png").exists())
+        self.assertIn("| rock pile, 50 bodies, 1200 rows, cfm 1e-05 | 8.10 (mindp, 10+fm) | 8.10 (mindp, 10+fm) | 8.10 (mindp, 10+fm) | "
+                      "8.10 (mindp, 10+fm) | schur-rows, 1.98 | schur-rows, 7.36 | schur-rows, 7.36 |", worth.worth(self.stored()))
 
     def test_bad_input_is_one_line(self):
         self.check_least("--repeats", 1)

@@ -7,7 +7,7 @@ import unittest
 import stored_data
 from synthetic import ROOT, SCRIPTS, run_script
 
-from cleave_scripts.documents import cuts, markers, paper_claims, paper_table, sets, speed, stability
+from cleave_scripts.documents import cuts, markers, paper_claims, paper_table, sets, speed, stability, worth
 from cleave_scripts.documents.stored import NoResults, Stored
 from cleave_scripts.measurements import extremes_steps
 from cleave_scripts.measurements.reference_stages import STAGES
@@ -51,7 +51,7 @@ class CheckoutTest(unittest.TestCase):
     def columns(self):
         """{small CSV file: its columns} as the commands write them."""
         written = {"extremes.csv": set(extremes_steps.WRITTEN)}
-        for command in ("two_threads", "modelled_workers", "busy_machine", "cold_starts", "karger", "ablation"):
+        for command in ("two_threads", "modelled_workers", "busy_machine", "cold_starts", "karger", "partition_over_time", "ablation"):
             listed = re.search(r"^COLUMNS = \((.*?)\)", (SCRIPTS / command).read_text(), re.M | re.S)[1]
             written[f"{command}.csv"] = set(re.findall(r'"(\w+)"', listed))
         with open(ROOT / "results" / "report" / "verdicts.csv", encoding="utf-8") as file:
@@ -267,6 +267,10 @@ class BlocksTest(unittest.TestCase):
         stored_data.karger(self.root)
         self.assertIn("| Rock Pile | 40 / 1.00 | 50 / 1.00 | 50 / 1.00 | 45 / 1.00 | 40 / 1.00 | 35 / 1.00 | 20 / 1.00 | 10000 | 100 | 41.0 | 21.0 |",
                       cuts.karger(self.stored))
+
+    def test_over_time(self):
+        stored_data.partition_over_time(self.root)
+        self.assertIn("| rock pile, mix+fm | 0.100 | 4.00, 0.950 (0 / 50 / 50) | 1.00, 1.00 (100 / 0 / 0) |", worth.over_time(self.stored))
 
     def test_rows_that_are_missing_are_an_error(self):
         (self.root / "two_threads.csv").write_text("step,t_s_ms\n")

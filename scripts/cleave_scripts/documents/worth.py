@@ -1,0 +1,54 @@
+"""What partitions are worth: which solver is fastest with its best partition, and what taking over parts from step to step saves."""
+from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements import partition_over_time, partition_worth
+from cleave_scripts.table import text
+
+OVER_TIME = ("partition_over_time.csv", "scripts/partition_over_time")
+WORTH = ("partition_worth.csv", "scripts/partition_worth")
+SHOWN_WORKERS = (8, 64)
+
+
+def _course_cell(course, always):
+    shares = " / ".join(f"{100 * share:.0f}" for share in course.shares.values())
+    return f"{text.number(course.saving(always))}, {text.number(course.rows(always))} ({shares})"
+
+
+def over_time(stored):
+    """Saving of t_pr and change of the cut by every rule of --repartition."""
+    rows = need(stored.table(*OVER_TIME), "repartitioning", "repartition")
+    always, *rules = partition_over_time.RULES
+    lines = [[f"{scene.replace('_', ' ')}, {partitioner}+{refiner}", text.number(found[always].t_pr_ms / found[always].t_s_ms),
+              *(_course_cell(found[rule], found[always]) for rule in rules)]
+             for (scene, partitioner, refiner), found in partition_over_time.courses(rows).items()]
+    return (f"t_pr of `always` over its t_s (one thread, `auto:schur-bodies`), then how many times less t_pr a rule takes than `always`, its "
+            "interface rows against those of `always`, and of a hundred steps those with fresh / repaired / kept parts; sums over all steps "
+            f"with a constraint ({stored.origin(OVER_TIME[0])}):\n\n" + text.table(["", "t_pr / t_s", *rules], lines))
+
+
+def _worth_cell(cell):
+    return text.number(cell.time_ms) + ("" if cell.partition == "-" else f" ({cell.partition.replace('@effort=best', ', best').replace('@max-bodies=', ', ')})")
+
+
+def _winner(problem, workers):
+    solver = problem.winner(workers)
+    return f"{partition_worth.NAMES[solver].split(',')[0]}, {text.number(problem.speed_up(solver, workers))}"
+
+
+def worth(stored):
+    """The least t_pr + t_s of every solver, and who wins on more workers."""
+    problems = partition_worth.problems(need(stored.table(*WORTH), "partitions and their worth", "threads"))
+    lines = []
+    for problem in problems:
+        scene, bodies, cfm = problem.key
+        two = min(problem.measured, key=lambda solver: problem.measured[solver].time_ms)
+        lines.append([f"{scene.replace('_', ' ')}, {bodies} bodies, {problem.rows} rows, cfm {float(cfm):g}",
+                      *(_worth_cell(problem.best[solver, 1]) for solver in partition_worth.NAMES),
+                      f"{partition_worth.NAMES[two].split(',')[0]}, {text.number(problem.base_ms / problem.measured[two].time_ms)}",
+                      *(_winner(problem, workers) for workers in SHOWN_WORKERS)])
+    return (f"Least t_pr + t_s of every solver over all partitions tried, ms, one thread, and the partition that gave it (`{WORTH[1]}`; "
+            f"{stored.origin(WORTH[0])}); then the fastest on two threads, and of the modelled {' and '.join(map(str, SHOWN_WORKERS))} workers, "
+            "with its speed-up against the fastest on one:\n\n" +
+            text.table(["", *partition_worth.NAMES.values(), "two threads", *(f"{workers} workers" for workers in SHOWN_WORKERS)], lines))
+
+
+BLOCKS = {"over_time": over_time, "worth": worth}
