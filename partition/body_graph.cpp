@@ -1,5 +1,6 @@
 #include "partition/body_graph.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -67,6 +68,7 @@ std::vector<int> row_starts(int bodies, std::span<const ConstraintLink> links) {
 BodyGraph::BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links,
                      std::optional<int> step, std::span<const double> position_m)
     : mass_kg_(mass_kg.begin(), mass_kg.end()),
+      fixed_rows_(mass_kg.size(), 0),
       step_(step),
       position_m_(position_m.begin(), position_m.end()) {
   check_masses(mass_kg);
@@ -74,6 +76,11 @@ BodyGraph::BodyGraph(std::span<const double> mass_kg, std::span<const Constraint
   const int n = body_count();
   check_links(n, links);
   const std::vector<int> start = row_starts(n, links);
+  for (const ConstraintLink& link : links) {
+    if (joins_two_bodies(link)) continue;
+    const int body = std::max(link.body_a, link.body_b);
+    if (body >= 0) fixed_rows_[body] += link.rows;
+  }
 
   std::vector<HalfLink> by_body(start[n]);
   std::vector<int> fill(start.begin(), start.end() - 1);
@@ -112,8 +119,9 @@ void BodyGraph::set_groups(std::span<const int> group_of_body) {
   group_.assign(group_of_body.begin(), group_of_body.end());
 }
 
-void BodyGraph::add_body(double mass_kg) {
+void BodyGraph::add_body(double mass_kg, int fixed_rows) {
   mass_kg_.push_back(mass_kg);
+  fixed_rows_.push_back(fixed_rows);
   first_.push_back(static_cast<int>(neighbour_.size()));
 }
 
@@ -138,7 +146,7 @@ std::vector<BodyGraph> BodyGraph::induced(std::span<const int> set_of_body, int 
       graph.constraints_.push_back(constraints_[k]);
       graph.rows_.push_back(rows_[k]);
     }
-    graph.add_body(mass_kg_[i]);
+    graph.add_body(mass_kg_[i], fixed_rows_[i]);
     if (has_positions())
       for (const int axis : {0, 1, 2}) graph.position_m_.push_back(position_m(i, axis));
     if (has_groups()) graph.group_.push_back(group(i));

@@ -43,6 +43,8 @@ class BodyGraph {
   int body_count() const { return static_cast<int>(mass_kg_.size()); }
   int edge_count() const { return static_cast<int>(neighbour_.size()) / 2; }
   double mass_kg(int body) const { return mass_kg_[body]; }
+  // Constraint rows that are no edge: with static geometry or of the body with itself.
+  int fixed_rows(int body) const { return fixed_rows_[body]; }
 
   bool has_positions() const { return !position_m_.empty(); }
   // axis: 0 to 2. Only where there are positions.
@@ -77,9 +79,10 @@ class BodyGraph {
   std::vector<BodyGraph> induced(std::span<const int> set_of_body, int sets) const;
 
  private:
-  void add_body(double mass_kg);
+  void add_body(double mass_kg, int fixed_rows);
 
   std::vector<double> mass_kg_;   // (n)
+  std::vector<int> fixed_rows_;   // (n)
   std::vector<int> first_{0};     // (n + 1)
   std::vector<int> neighbour_;    // (2 edges)
   std::vector<int> constraints_;  // (2 edges)

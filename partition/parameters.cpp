@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "partition/calibration.h"
+
 namespace cleave::parameters {
 namespace {
 
@@ -143,6 +145,37 @@ const Parameter& scotch_strategy() {
                                    .words = {"default", "quality", "speed", "balance", "safety"},
                                    .help = "what SCOTCH cares for most",
                                    .source = "SCOTCH 7.0 user's guide"};
+  return parameter;
+}
+
+const Parameter& calibration() {
+  static const Parameter parameter{.name = "calibration",
+                                   .kind = Kind::content,
+                                   .default_value = "shipped",
+                                   .help = "costs that cleave calibrate fitted, by their fingerprint",
+                                   .source = "partition/README.md",
+                                   .read_content = read_calibration};
+  return parameter;
+}
+
+const Parameter& cost_kernel() {
+  static const Parameter parameter{.name = "cost-kernel",
+                                   .kind = Kind::word,
+                                   .default_value = "schur-rows",
+                                   .words = {"schur-rows", "schur-bodies"},
+                                   .help = "kernel whose time is modelled",
+                                   .source = "partition/README.md"};
+  return parameter;
+}
+
+// Not those of the solve, so that parts do not depend on the number of threads.
+const Parameter& cost_threads() {
+  static const Parameter parameter{.name = "cost-threads",
+                                   .kind = Kind::integer,
+                                   .default_value = "1",
+                                   .range = {1, 65536},
+                                   .help = "threads on which its time is modelled",
+                                   .source = "partition/README.md"};
   return parameter;
 }
 

@@ -28,6 +28,9 @@ const Parameter& partition_seed();  // of the dice, for partitioners that draw
 const Parameter& trials();          // of which the best counts
 const Parameter& ufactor();
 const Parameter& scotch_strategy();
+const Parameter& calibration();   // of the cost model: a fingerprint (calibration.h)
+const Parameter& cost_kernel();   // CostKernel, of those that work on parts
+const Parameter& cost_threads();  // that the cost model counts on
 
 }  // namespace parameters
 }  // namespace cleave

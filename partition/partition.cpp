@@ -29,16 +29,17 @@ std::vector<int> count_cut_edges(const BodyGraph& graph, std::span<const int> pa
   return cut_edges;
 }
 
-// Greedy vertex cover. uncovered: cut edges of every body that no chosen body covers; used up. Bodies are
-// kept in buckets by that count, each a heap by index; a count only falls, so a stale body is put down where
-// it belongs.
-int count_cover_bodies(const BodyGraph& graph, std::span<const int> part_of_body,
-                       std::vector<int> uncovered) {
+}  // namespace
+
+// uncovered: cut edges of every body that no chosen body covers. Bodies are kept in buckets by that count, each a
+// heap by index; a count only falls, so a stale body is put down where it belongs.
+std::vector<char> cut_cover(const BodyGraph& graph, std::span<const int> part_of_body) {
+  std::vector<int> uncovered = count_cut_edges(graph, part_of_body);
   const int n = graph.body_count();
   const int most = n == 0 ? 0 : *std::max_element(uncovered.begin(), uncovered.end());
   std::vector<std::vector<int>> bucket(most + 1);
   for (int i = 0; i < n; ++i) bucket[uncovered[i]].push_back(i);  // ascending: already heaps
-  int chosen = 0;
+  std::vector<char> chosen(n, 0);
   for (int count = most; count > 0; --count) {
     std::vector<int>& heap = bucket[count];
     while (!heap.empty()) {
@@ -51,7 +52,7 @@ int count_cover_bodies(const BodyGraph& graph, std::span<const int> part_of_body
         std::push_heap(lower.begin(), lower.end(), std::greater<>());
         continue;
       }
-      ++chosen;
+      chosen[body] = 1;
       uncovered[body] = 0;
       for (int other : graph.neighbours(body)) {
         if (part_of_body[other] != part_of_body[body] && uncovered[other] > 0) --uncovered[other];
@@ -60,8 +61,6 @@ int count_cover_bodies(const BodyGraph& graph, std::span<const int> part_of_body
   }
   return chosen;
 }
-
-}  // namespace
 
 Partition numbered_by_lowest_body(std::span<const int> label_of_body) {
   Partition partition;
@@ -100,7 +99,8 @@ PartitionMetrics measure_partition(const BodyGraph& graph, std::span<const int> 
 
   const std::vector<int> cut_edges = count_cut_edges(graph, part_of_body);
   metrics.interface_bodies = static_cast<int>(n - std::count(cut_edges.begin(), cut_edges.end(), 0));
-  metrics.interface_cover_bodies = count_cover_bodies(graph, part_of_body, cut_edges);
+  const std::vector<char> cover = cut_cover(graph, part_of_body);
+  metrics.interface_cover_bodies = static_cast<int>(std::count(cover.begin(), cover.end(), 1));
   return metrics;
 }
 

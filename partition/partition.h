@@ -4,6 +4,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "partition/body_graph.h"
@@ -13,6 +14,7 @@ namespace cleave {
 struct Partition {
   std::vector<int> part_of_body;  // (n)
   int part_count = 0;
+  std::string choice = {};  // of a partitioner that chooses others: what made it, else empty
 };
 
 // Parts numbered by their lowest body. label_of_body: (n) equal within a part and nowhere else, in [0, n).
@@ -36,6 +38,10 @@ struct PartitionMetrics {
 // Throws std::invalid_argument when part_of_body has not one id per body or an id lies outside [0, n). Ids
 // that no body carries are not counted as parts.
 PartitionMetrics measure_partition(const BodyGraph& graph, std::span<const int> part_of_body);
+
+// A small vertex cover of the cut edges, (n) 1 for its bodies: greedy, most uncovered cut edges first, lowest index on
+// ties.
+std::vector<char> cut_cover(const BodyGraph& graph, std::span<const int> part_of_body);
 
 // Total weight of the edges whose ends lie in different parts.
 long cut_weight(const BodyGraph& graph, std::span<const int> part_of_body, EdgeWeight unit);

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "partition/refuse.h"
+
 namespace cleave {
 namespace {
 
@@ -68,6 +70,10 @@ Partition Partitioner::run(const BodyGraph& graph) const {
   Partition partition = do_run(graph);
   assert(find_broken_promise(graph, partition, promise_, max_bodies_, grown_bodies_).empty());
   return partition;
+}
+
+void Partitioner::keep_choice(const std::string& choice) {
+  refuse("choice of a partitioner that chooses nothing", choice, "none");
 }
 
 }  // namespace cleave

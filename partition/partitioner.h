@@ -46,6 +46,10 @@ class Partitioner {
     grown_bodies_ = grown_bodies;
   }
   std::optional<int> max_bodies() const { return max_bodies_; }
+
+  // For one that chooses others: makes this choice (Partition::choice), and no other, from now on. Throws
+  // std::invalid_argument for one that it does not make.
+  virtual void keep_choice(const std::string& choice);
   const PartsPromise& promised() const { return promise_; }
 
  private:

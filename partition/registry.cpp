@@ -22,6 +22,7 @@ std::unique_ptr<Partitioner> make_random(const Settings& settings);
 std::unique_ptr<Partitioner> make_semantic(const Settings& settings);
 std::unique_ptr<Partitioner> make_geometric(const Settings& settings);
 std::unique_ptr<Partitioner> make_karger(const Settings& settings);
+std::unique_ptr<Partitioner> make_auto(const Settings& settings);
 std::unique_ptr<Partitioner> make_file(const Settings& settings);
 std::string file_content(const Settings& settings);
 
@@ -48,6 +49,7 @@ std::unique_ptr<Refiner> make_kernighan_lin(const Settings& settings);
 std::unique_ptr<Refiner> make_fiduccia_mattheyses(const Settings& settings);
 std::unique_ptr<Refiner> make_kl_hill(const Settings& settings);
 std::unique_ptr<Refiner> make_fm_hill(const Settings& settings);
+std::unique_ptr<Refiner> make_fm_cost(const Settings& settings);
 
 namespace {
 
@@ -133,6 +135,13 @@ std::span<const PartitionerEntry> partitioners() {
        {.at_most_grown_bodies = true},
        false,
        make_multilevel},
+      {{"auto",
+        "the partitioner, refiner and size of parts of least modelled time, chosen once a scene",
+        "partition/README.md",
+        {calibration(), cost_kernel(), cost_threads()}},
+       {},
+       false,
+       make_auto},
       {{"file",
         "parts that another program made",
         "METIS 5.1 manual, partition file",
@@ -254,6 +263,13 @@ std::span<const RefinerEntry> refiners() {
           .source = "partition/README.md"}}},
        false,
        make_fm_hill},
+      {{"fm-cost",
+        "move single bodies while the modelled time of the solve falls",
+        "partition/README.md",
+        {max_growth(), edge_weight(), calibration(), cost_kernel(), cost_threads()}},
+       false,
+       make_fm_cost,
+       true},
   };
   return table;
 }

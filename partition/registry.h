@@ -22,6 +22,7 @@ struct PartitionerEntry : AlgorithmEntry {
 struct RefinerEntry : AlgorithmEntry {
   bool of_paper;
   std::unique_ptr<Refiner> (*make)(const Settings& settings);
+  bool may_raise_cut = false;  // its objective is another
 };
 
 std::span<const PartitionerEntry> partitioners();

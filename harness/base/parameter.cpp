@@ -47,6 +47,7 @@ std::string allowed_text(const Parameter& parameter) {
     case Kind::flag:
       return "true|false";
     case Kind::path:
+    case Kind::content:
       return "a file";
   }
   return "";
@@ -68,6 +69,8 @@ std::string checked_value(const Parameter& parameter, const std::string& option,
     case Kind::path:
       if (text.empty()) throw std::invalid_argument(option + ": needs the name of a file");
       return text;
+    case Kind::content:
+      return parameter.read_content(option, text);
   }
   return text;
 }

@@ -147,9 +147,11 @@ void store(const Combination& combination, const StepRecord& row, const Outcome&
                            outcome.verdict.residual_m_per_s,
                            outcome.solution.impulse,
                            outcome.verdict.velocity};
-  if (!outcome.part_of_body.empty())
-    file.partitions[label] = stored_partition(combination.split_setup(), outcome.part_of_body,
-                                              outcome.parent_of_part, outcome.origin);
+  if (outcome.part_of_body.empty()) return;
+  SplitSetup setup = combination.split_setup();
+  setup.choice = outcome.choice;
+  file.partitions[label] = stored_partition(setup, outcome.part_of_body, outcome.parent_of_part,
+                                            outcome.origin);
 }
 
 class Replay {

@@ -52,6 +52,8 @@ std::string placeholder_of(const Parameter& parameter) {
       return "N";
     case Parameter::Kind::word:
       return joined(parameter.words, "|");
+    case Parameter::Kind::content:
+      return "FILE";
     default:
       return "X";
   }

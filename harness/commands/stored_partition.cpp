@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kSkipSmallIslands = "skip_small_islands";
 constexpr const char* kArity = "arity";
 constexpr const char* kOrigin = "partition_origin";
+constexpr const char* kChoice = "auto_choice";
 constexpr const char* kOfRefiner = "refiner_";
 constexpr Range kArities{2, std::numeric_limits<double>::infinity()};
 
@@ -69,6 +70,8 @@ StoredPartition stored_partition(const SplitSetup& setup, std::vector<int> part_
     stored.parameters.push_back({kArity, Parameter::Kind::integer, std::to_string(*setup.arity)});
   if (origin != PartitionOrigin::fresh)
     stored.parameters.push_back({kOrigin, Parameter::Kind::word, to_string(origin)});
+  if (!setup.choice.empty())
+    stored.parameters.push_back({kChoice, Parameter::Kind::word, setup.choice});
   return stored;
 }
 
@@ -91,6 +94,7 @@ SplitSetup read_split_setup(const StoredPartition& partition) {
                    read_stored_refiner(partition)};
   const StoredParameter* skip = find_stored(partition, kSkipSmallIslands);
   setup.skip_small_islands = skip != nullptr && skip->text == "true";
+  if (const StoredParameter* choice = find_stored(partition, kChoice)) setup.choice = choice->text;
   if (const StoredParameter* arity = find_stored(partition, kArity))
     setup.arity = static_cast<int>(parse_integer("--arity", arity->text, kArities));
   else if (!partition.parent_of_part.empty())

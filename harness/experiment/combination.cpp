@@ -69,6 +69,7 @@ void set_split(const Repeats& repeats, StepRecord& row) {
   row.set_partition_before(measure_partition(split.graph, split.before.part_of_body));
   row.set_partition(measure_partition(split.graph, split.parts.part_of_body));
   row.partition_origin = to_string(split.origin);
+  if (!split.parts.choice.empty()) row.auto_choice = split.parts.choice;
   row.t_graph_ms = median(repeats, [](const auto& repeat) { return repeat.split->graph_ms; });
   row.t_partition_ms = median(repeats, [](const auto& repeat) { return repeat.split->partition_ms; });
   row.t_refine_ms = median(repeats, [](const auto& repeat) { return repeat.split->refine_ms; });
@@ -207,6 +208,7 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
     chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
     chosen.outcome.parent_of_part = chosen.split->parent_of_part;
     chosen.outcome.origin = chosen.split->origin;
+    chosen.outcome.choice = chosen.split->parts.choice;
   }
   if (chosen.outcome.solved())
     set_measures(problem, chosen.split ? &chosen.split->graph : nullptr, chosen.outcome, row);

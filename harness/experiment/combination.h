@@ -42,6 +42,7 @@ struct Outcome {
   std::vector<int> part_of_body;    // (n) what `measure` split the bodies into; empty where parts are ignored
   std::vector<int> parent_of_part;  // the tree of these parts; empty: one level
   PartitionOrigin origin = PartitionOrigin::fresh;
+  std::string choice;               // of a partitioner that chose others to make them; else empty
   ResidualReport verdict;
   bool finite = false;  // impulses and velocities are numbers
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 #include <stdexcept>
+#include <string_view>
 
 #include "harness/base/hash.h"
 #include "harness/base/names.h"
@@ -142,6 +143,30 @@ void override_solvers(const Given& given, RunOptions& options) {
   options.solvers = read_list("solver", joined(changed, ","), options.common);
 }
 
+constexpr std::string_view kOfCost = "-cost";
+
+// What lowers the modelled time in the refiner's place: itself, or the one that is called after it.
+std::string refiner_of_cost(const std::string& name) {
+  if (name == "none" || name.ends_with(kOfCost)) return name;
+  const std::vector<std::string> names = names_of(refiners());
+  const std::string of_cost = name + std::string(kOfCost);
+  if (std::ranges::count(names, of_cost) > 0) return of_cost;
+  std::vector<std::string> allowed = {"none"};
+  for (const std::string& other : names)
+    if (other.ends_with(kOfCost)) allowed.push_back(other.substr(0, other.size() - kOfCost.size()));
+  reject("objective",
+         "cost is none of refiner '" + name + "'; allowed with it: --refiner " + joined(allowed, ","));
+}
+
+// Replaces every refiner by the one that has the objective.
+void override_refiners(RunOptions& options) {
+  if (options.objective == Objective::rows) return;
+  std::vector<std::string> changed;
+  for (const Algorithm& refiner : options.refiners)
+    changed.push_back(refiner_of_cost(refiner.name) + refiner.text.substr(refiner.name.size()));
+  options.refiners = read_list("refiner", joined(changed, ","), options.common);
+}
+
 // Why the run cannot have its bodies split by it; empty: it can.
 std::string why_unable(const Algorithm& partitioner, const RunOptions& options) {
   if (options.skip_small_islands && !partitioner.settings.has("max-bodies"))
@@ -227,6 +252,7 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given,
   check_scene_options(scene_row(options.scene), scene_given(options.common));
   read_stiffness(given, options);
   override_solvers(given, options);
+  override_refiners(options);
   leave_out_unable(given, options);
   read_session(given, options);
   read_friction(options);
@@ -250,6 +276,7 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
   RunOptions options = options_with(read_common(given));
   read_table(given, options);
   override_solvers(given, options);
+  override_refiners(options);
   leave_out_unable(given, options);
   read_session(given, options);
   check_owned(options, stored, false);

@@ -23,6 +23,9 @@ namespace cleave {
 // separate: one world per combination, each advanced by its own combination.
 enum class RunMode { lockstep, separate };
 
+// What refiners lower: the rows of the cut, or the modelled time of a solve (partition/cost_model.h).
+enum class Objective { rows, cost };
+
 struct RunOptions {
   Algorithm scene;
   std::vector<Algorithm> partitioners, refiners, solvers;
@@ -31,6 +34,8 @@ struct RunOptions {
   std::string strategy, kernel;  // override that half of every solver's strategy:kernel; empty: as named
   CommonValues common;           // values given for all algorithms that have a parameter
   RunMode mode = RunMode::lockstep;
+  Objective objective =
+      Objective::rows;  // cost: every refiner is the one of that objective, as fm-cost of fm
   int steps = 500;
   int measure_every = 1;
   std::vector<int> at;  // ascending: measure these steps only (record); empty: measure_every decides

@@ -46,6 +46,7 @@ void PartitionKeeper::take_over_parts(Split& split) const {
   std::vector<int> part_of_body = before_->parts.part_of_body;
   part_of_body.resize(split.graph.body_count(), -1);
   split.before = take_over(split.graph, part_of_body, before_->most_bodies);
+  split.before.choice = before_->parts.choice;
   split.partition_ms = watch.lap_ms();
   split.parts = split.before;
   watch.lap_ms();  // the copy is ours

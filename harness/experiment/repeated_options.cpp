@@ -69,6 +69,7 @@ void drop_replaced(const Given& given, Given& stored) {
   if (any_of(given, {"stiffness", "damping"}) || any_of(stored, {"stiffness", "damping"}))
     drop(stored, {"erp", "cfm"});
   if (given.contains("solver")) drop(stored, {"strategy", "kernel"});
+  if (given.contains("refiner")) drop(stored, {"objective"});
   if (value_of(given.contains("mode") ? given : stored, "mode") == "separate")
     drop(stored, {"advance", "record-motion"});
 }

@@ -25,6 +25,7 @@ Splitter::Splitter(const SplitSetup& setup)
     : partitioner_(make_partitioner(setup.partitioner)),
       refiner_(make_refiner(setup.refiner)),
       skip_small_islands_(setup.skip_small_islands) {
+  if (!setup.choice.empty()) partitioner_->keep_choice(setup.choice);
   if (setup.arity) set_splitter_.emplace(setup.partitioner, setup.refiner, *setup.arity);
   if (skip_small_islands_ && !partitioner_->max_bodies())
     throw std::invalid_argument("--skip-small-islands: partitioner " + setup.partitioner.text +

@@ -39,6 +39,7 @@ struct SplitSetup {
   Algorithm partitioner, refiner;
   bool skip_small_islands = false;
   std::optional<int> arity = {};  // children of a set, by recursion; none: one level
+  std::string choice = {};        // that a partitioner made before and is to make again; empty: it chooses
 };
 
 // What a solver says of it: its parameter `arity`, where it has one.
@@ -46,8 +47,8 @@ std::optional<int> arity_of(const Algorithm& solver);
 
 class Splitter {
  public:
-  // Throws std::invalid_argument for --skip-small-islands with a partitioner that has no max-bodies, and as
-  // SetSplitter.
+  // Throws std::invalid_argument for --skip-small-islands with a partitioner that has no max-bodies, for a choice that
+  // the partitioner does not make, and as SetSplitter.
   explicit Splitter(const SplitSetup& setup);
 
   // step: which one of its run the problem is. Throws CannotSplit where the partitioner does.

@@ -32,9 +32,9 @@ std::string cell_text(ColumnOf, int value) { return std::to_string(value); }
 std::string cell_text(ColumnOf, std::uint64_t value) { return std::to_string(value); }
 
 // In the order in which they came.
-constexpr std::string_view kLate[] = {"partition_seed", "trials",          "karger_method",
-                                      "ufactor",        "scotch_strategy", "effort",
-                                      "patience",       "merge_small",     "split"};
+constexpr std::string_view kLate[] = {
+    "partition_seed", "trials",      "karger_method", "ufactor",     "scotch_strategy", "effort",
+    "patience",       "merge_small", "split",         "calibration", "cost_kernel",     "cost_threads"};
 
 // 0 for all that are not late.
 std::ptrdiff_t late_rank(const std::string& column) {

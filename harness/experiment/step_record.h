@@ -113,6 +113,7 @@ struct StepRecord {
   std::string scene_options = "-";
   std::string schema_version = kStepsSchema;
   double factor_predicted_mb = kUnmeasured;
+  std::string auto_choice = "-";
 
   std::string parameter(const std::string& column) const {
     const auto found = parameters.find(column);
@@ -298,6 +299,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit("repartition", r.repartition, "when steps are split anew, as given", About::partition);
   visit("partition_origin", r.partition_origin,
         "fresh, repaired or kept: where the parts of the step come from");
+  visit("auto_choice", r.auto_choice,
+        "partitioner+refiner/kernel that the partitioner auto chose, the kernel being that of the model");
 }
 
 // "run_id,scene,...\n"

@@ -70,6 +70,14 @@ const std::vector<BadInput> kBadInputs = {
     {{"--partitioner", "mindp,mindp"}, {"--partitioner", "'mindp'", "twice"}},
     {{"--partitioner", ""}, {"--partitioner", "''", "mindp"}},
     {{"--refiner", "fn"}, {"--refiner", "'fn'", "'fm'", "none"}},
+    {{"--objective", "time"}, {"--objective", "'time'", "rows", "cost"}},
+    {{"--objective", "cost", "--refiner", "kl"}, {"--objective", "refiner 'kl'", "none,fm"}},
+    {{"--objective", "cost", "--refiner", "fm@as-printed=true"},
+     {"--refiner", "as-printed is a parameter of", "fm-cost has"}},
+    {{"--objective", "cost", "--refiner", "fm,fm-cost"}, {"--refiner", "'fm-cost'", "twice"}},
+    {{"--calibration", "shipped"}, {"--calibration", "refiner fm-cost", "nothing in this run has it"}},
+    {{"--refiner", "fm-cost", "--calibration", "no_such_file"},
+     {"--calibration", "'no_such_file'", "shipped"}},
     {{"--solver", "shcur"}, {"--solver", "'shcur'", "'schur'", "monolithic"}},
     {{"--solver", "all"}, {"--solver", "'all'", "schur"}},
     {{"--advance", "exakt"}, {"--advance", "'exakt'", "'exact'"}},
@@ -316,10 +324,11 @@ TEST(Options, ALookOutThatIsNoNumberIsRefused) {
 TEST(Options, EveryOptionThatCanChangeACellHasAColumn) {
   const std::map<std::string, std::string> renamed = {
       {"dt", "dt_s"}, {"gravity", "gravity_m_per_s2"}, {"repeats", "repeat_count"}};
-  // Which rows there are, where they go, what --stiffness and --damping make of cfm and erp, and what rows that it refuses
-  // name in their reason.
-  const std::set<std::string> not_in_a_cell = {"measure-every", "skip",      "out",     "force",
-                                               "record-motion", "stiffness", "damping", "memory-limit"};
+  // Which rows there are, where they go, what --stiffness and --damping make of cfm and erp, --objective of refiners, and
+  // what rows that it refuses name in their reason.
+  const std::set<std::string> not_in_a_cell = {"measure-every", "skip",          "out",
+                                               "force",         "record-motion", "stiffness",
+                                               "damping",       "memory-limit",  "objective"};
   std::set<std::string> names;
   for (const Column& column : columns()) names.insert(column.name);
   for (const OptionSpec& spec : run_option_specs()) {

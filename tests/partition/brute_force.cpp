@@ -178,7 +178,7 @@ std::string grown_fault(const Bodies& bodies, const Partition& partition, int ma
 }
 
 std::string refined_fault(const Bodies& bodies, const Partition& before, const Partition& after,
-                          const RefineOptions& options, const RefineSummary& summary) {
+                          const RefineOptions& options, const RefineSummary& summary, bool may_raise_cut) {
   if (const std::string fault = ids_fault(bodies, after); !fault.empty()) return fault;
   std::ostringstream fault;
   if (after.part_count != before.part_count)
@@ -197,7 +197,8 @@ std::string refined_fault(const Bodies& bodies, const Partition& before, const P
     fault << "cut_before " << summary.cut_before << ", is " << cut_before << "; ";
   if (summary.cut_after != cut_after)
     fault << "cut_after " << summary.cut_after << ", is " << cut_after << "; ";
-  if (cut_after > cut_before) fault << "cut rises from " << cut_before << " to " << cut_after << "; ";
+  if (cut_after > cut_before && !may_raise_cut)
+    fault << "cut rises from " << cut_before << " to " << cut_after << "; ";
   if (summary.exchanges < 0) fault << "exchanges " << summary.exchanges << "; ";
   return fault.str();
 }

@@ -22,10 +22,12 @@ Bodies among(const Bodies& all, const std::vector<int>& members) {
     index[body] = bodies.count();
     bodies.mass_kg.push_back(all.mass_kg[body]);
   }
-  const auto is_in = [&](int body) { return body >= 0 && index[body] >= 0; };
+  // Links with static geometry stay.
+  const auto is_in = [&](int body) { return body < 0 || index[body] >= 0; };
+  const auto inside = [&](int body) { return body < 0 ? -1 : index[body]; };
   for (const ConstraintLink& link : all.links)
     if (is_in(link.body_a) && is_in(link.body_b))
-      bodies.links.push_back({index[link.body_a], index[link.body_b], link.rows});
+      bodies.links.push_back({inside(link.body_a), inside(link.body_b), link.rows});
   return bodies;
 }
 

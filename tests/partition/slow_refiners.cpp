@@ -5,6 +5,7 @@
 #include <optional>
 #include <tuple>
 
+#include "tests/partition/slow_cost.h"
 #include "tests/partition/slow_hill.h"
 #include "tests/partition/slow_twins.h"
 
@@ -145,7 +146,8 @@ constexpr RefinerTwin kRefiners[] = {{"none", none},
                                      {"kl", kernighan_lin},
                                      {"fm", fiduccia_mattheyses},
                                      {"kl-hill", slow_kl_hill},
-                                     {"fm-hill", slow_fm_hill}};
+                                     {"fm-hill", slow_fm_hill},
+                                     {"fm-cost", slow_fm_cost}};
 
 }  // namespace
 

@@ -74,6 +74,7 @@ COMMANDS = {
                        "--jobs": "count", **MEASURED}, runs=True),
     "modelled_workers": Command({"--rounds": "count", **MEASURED}, runs=True),
     "partition_over_time": Command({"--steps": "count", **MEASURED}, runs=True),
+    "partition_regret": Command({"--rounds": "count", "--threads": "count", **MEASURED}, runs=True),
     "partition_worth": Command({"--repeats": "count", **MEASURED}, runs=True),
     "readme_figures": Command(MEASURED, ("{tree}",), ("{tree}",)),
     "readme_tables": Command({"--check": "", "--root": "input directory"}, ("--root", "{empty}"), ("{empty}",)),

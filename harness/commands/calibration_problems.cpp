@@ -1,0 +1,78 @@
+#include "harness/commands/calibration_problems.h"
+
+#include <map>
+
+#include "harness/base/progress.h"
+#include "harness/commands/manifested_work.h"
+#include "harness/experiment/simulation.h"
+#include "harness/files/problem_file.h"
+
+namespace cleave {
+namespace {
+
+using Given = std::map<std::string, std::string>;
+
+struct Source {
+  const char *scene, *size, *count, *at;
+};
+
+// Every second one is held out, so that sizes and scenes are in both halves.
+constexpr Source kSources[] = {
+    {"rock_pile", "bodies", "50", "80,150"},
+    {"rock_pile", "bodies", "100", "80,150"},
+    {"rock_pile", "bodies", "200", "100,200"},
+    {"rock_pile", "bodies", "300", "100,200"},
+    {"large_rock_pile", "bodies", "200", "100,200"},
+    {"large_rock_pile", "bodies", "400", "100,200"},
+    {"log_tower", "layers", "10", "20,90"},
+    {"log_tower", "layers", "20", "20,90"},
+    {"log_tower", "layers", "30", "20,90"},
+    {"log_tower", "layers", "40", "20,90"},
+    {"chain_drop", "links", "50", "100,250"},
+    {"chain_drop", "links", "100", "100,250"},
+    {"silo", "bodies", "50", "10,20"},
+    {"silo", "bodies", "80", "10,20"},
+    {"silo", "bodies", "150", "10,20"},
+    {"silo", "bodies", "200", "10,20"},
+};
+
+RunOptions options_of(const Source& source, std::uint64_t seed) {
+  RunOptions options = parse_run_options({{"scene", source.scene},
+                                          {source.size, source.count},
+                                          {"solver", "exact"},
+                                          {"repeats", "1"},
+                                          {"seed", std::to_string(seed)},
+                                          {"out", "-"}});
+  options.at = parse_integers("--at", source.at, {0, 1e6});
+  options.steps = options.at.back() + 1;
+  return options;
+}
+
+}  // namespace
+
+std::vector<CalibrationProblem> recorded_problems(const std::vector<std::string>& files) {
+  std::vector<CalibrationProblem> problems;
+  for (const std::string& path : files) {
+    ProblemFile file = read_problem_file_aloud(path);
+    std::vector<double> position_m = known_positions(file);
+    problems.push_back({path, std::move(file.problem), std::move(position_m)});
+  }
+  return problems;
+}
+
+std::vector<CalibrationProblem> simulated_problems(std::uint64_t seed) {
+  std::vector<CalibrationProblem> problems;
+  ProgressLine line("simulating");
+  int done = 0;
+  for (const Source& source : kSources) {
+    const std::string name = std::string(source.scene) + " --" + source.size + " " + source.count;
+    const auto keep = [&](const ObservedStep& step) {
+      if (!step.rows.empty()) problems.push_back({name, step.problem, step.context.position_m});
+    };
+    Simulation(options_of(source, seed), stop_requested(), keep).run([](auto) {}, [](int, int) {});
+    line.update(++done, static_cast<int>(std::size(kSources)));
+  }
+  return problems;
+}
+
+}  // namespace cleave

@@ -1,0 +1,39 @@
+// Fits the cost model (partition/cost_model.h) to measured solves, and says how far it is off.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "partition/cost_model.h"
+
+namespace cleave {
+
+// One measured solve.
+struct CostSample {
+  BodyGraph graph;
+  Partition parts;
+  CostKernel kernel = CostKernel::schur_rows;
+  int threads = 1;
+  double t_s_ms = 0;
+  std::array<double, kCostGroups> group_ms{};  // of which in the stages of each group
+  int factorizations = 0;
+  double active_share = 1;  // of the cut rows, those that were in the interface of schur-rows
+};
+
+// The number of rows of a dense interface whose factorisation takes so many flops, as cost_features.h counts them.
+double interface_size(double flops);
+
+// Samples of one kernel and number of threads, at least one. Expected numbers are medians. Each group of
+// terms is fitted to the times of its own stages, with what each sample really factored: nonnegative coefficients of least
+// squared error as a share of the whole solve.
+KernelCost fit_cost(std::span<const CostSample> samples);
+
+// Of one sample. counted: with its own number of factorisations and share of active rows; else with the expected ones,
+// from the partition alone.
+double modelled_ms(const CostSample& sample, const KernelCost& cost, bool counted);
+
+// Median of |modelled / measured - 1|; NaN without samples.
+double median_error(std::span<const CostSample> samples, const KernelCost& cost, bool counted);
+
+}  // namespace cleave

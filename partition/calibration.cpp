@@ -1,0 +1,225 @@
+#include "partition/calibration.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <sstream>
+#include <stdexcept>
+
+#include "harness/base/hash.h"
+#include "harness/base/names.h"
+#include "harness/base/numbers.h"
+#include "partition/parameters.h"
+
+namespace cleave {
+
+extern const char* const kShippedCalibration;  // calibration.toml
+
+namespace {
+
+constexpr const char* kSchema = "cleave-calibration-1";
+constexpr const char* kThreads = ".threads-";
+constexpr Range kAtLeastZero{0, std::numeric_limits<double>::infinity()};
+
+// Every number of a section, in the order of the lines.
+template <class Cost, class Visitor>
+void visit_numbers(Cost& cost, Visitor&& visit) {
+  visit("factorizations", cost.factorizations, kAtLeastZero);
+  visit("active_share", cost.active_share, Range{0, 1});
+  for (int t = 0; t < kCostTerms; ++t) visit(cost_terms()[t].name, cost.cost[t], kAtLeastZero);
+}
+
+// A string of TOML.
+std::string quoted(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '"' || c == '\\') safe += '\\';
+    safe += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
+  }
+  return '"' + safe + '"';
+}
+
+std::string section_of(const KernelCost& cost) {
+  return cost_kernel_names()[static_cast<int>(cost.kernel)] + (kThreads + std::to_string(cost.threads));
+}
+
+class Reader {
+ public:
+  Reader(const std::string& source, const std::string& text) : source_(source), lines_(text) {}
+
+  std::vector<KernelCost> run() {
+    std::string line;
+    while (std::getline(lines_, line)) {
+      ++number_;
+      if (line.empty() || line.front() == '#') continue;
+      if (line.front() == '[') {
+        end_section();
+        begin_section(line);
+      } else {
+        read_assignment(line);
+      }
+    }
+    end_section();
+    if (!has_schema_) fail("is no calibration: schema = \"" + std::string(kSchema) + "\" is missing");
+    if (kernels_.empty()) fail("has no kernel");
+    return std::move(kernels_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& text) const { throw std::invalid_argument(source_ + " " + text); }
+  [[noreturn]] void fail_line(const std::string& text) const {
+    throw std::invalid_argument(source_ + ": line " + std::to_string(number_) + ": " + text);
+  }
+
+  void begin_section(const std::string& line) {
+    const std::size_t dot = line.find(kThreads);
+    if (dot == std::string::npos || line.back() != ']')
+      fail_line("'" + line + "', allowed: [KERNEL" + kThreads + "N]");
+    const std::string place = source_ + ": line " + std::to_string(number_);
+    const std::string kernel = line.substr(1, dot - 1);
+    const std::vector<std::string> names(cost_kernel_names().begin(), cost_kernel_names().end());
+    check_name(place, kernel, names);
+    const std::size_t from = dot + std::string(kThreads).size();
+    KernelCost cost;
+    cost.kernel = static_cast<CostKernel>(std::ranges::find(names, kernel) - names.begin());
+    cost.threads = parse_integer(place, line.substr(from, line.size() - 1 - from), {1, 1 << 16});
+    for (const KernelCost& other : kernels_)
+      if (section_of(other) == section_of(cost)) fail_line(line + " stands twice");
+    kernels_.push_back(cost);
+    given_.clear();
+  }
+
+  void read_assignment(const std::string& line) {
+    const std::size_t equals = line.find(" = ");
+    if (equals == std::string::npos) fail_line("'" + line + "', allowed: name = value");
+    const std::string name = line.substr(0, equals), value = line.substr(equals + 3);
+    if (kernels_.empty()) {
+      if (name == "schema" && value != '"' + std::string(kSchema) + '"')
+        fail_line("schema is " + value + ", allowed: \"" + kSchema + "\"");
+      has_schema_ |= name == "schema";
+      return;
+    }
+    const std::string place = source_ + ": line " + std::to_string(number_) + ": " + name;
+    std::vector<std::string> names;
+    bool found = false;
+    visit_numbers(kernels_.back(), [&](const char* field, double& number, const Range& range) {
+      names.push_back(field);
+      if (name != field) return;
+      number = parse_number(place, value, range);
+      found = true;
+    });
+    if (!found) check_name(source_ + ": line " + std::to_string(number_), name, names);
+    if (!given_.emplace(name, value).second) fail_line(name + " stands twice");
+  }
+
+  void end_section() {
+    if (kernels_.empty()) return;
+    visit_numbers(kernels_.back(), [&](const char* field, double&, const Range&) {
+      if (!given_.contains(field))
+        fail("lacks " + std::string(field) + " of [" + section_of(kernels_.back()) + "]");
+    });
+  }
+
+  const std::string& source_;
+  std::istringstream lines_;
+  int number_ = 0;
+  bool has_schema_ = false;
+  std::map<std::string, std::string> given_;  // of the section at hand
+  std::vector<KernelCost> kernels_;
+};
+
+std::string whole_text(const std::string& option, const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  if (!file.is_open() || file.bad())
+    throw std::invalid_argument(option + ": '" + path +
+                                "' cannot be read; allowed: shipped, or a file of cleave calibrate");
+  return text;
+}
+
+bool is_fingerprint(const std::string& text) {
+  return text.size() == 16 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+struct Known {
+  std::mutex mutex;
+  std::map<std::string, Calibration> calibrations;  // never taken out
+
+  const Calibration& add(Calibration calibration) {
+    const std::scoped_lock lock(mutex);
+    return calibrations.emplace(calibration.fingerprint, std::move(calibration)).first->second;
+  }
+};
+
+Known& known() {
+  static Known all;
+  return all;
+}
+
+const Calibration& shipped() {
+  static const Calibration& calibration =
+      known().add(parse_calibration("the shipped calibration", kShippedCalibration));
+  return calibration;
+}
+
+}  // namespace
+
+KernelCost Calibration::of(CostKernel kernel, int threads) const {
+  const KernelCost* best = nullptr;
+  for (const KernelCost& cost : kernels)
+    if (cost.kernel == kernel && cost.threads <= threads && (!best || cost.threads > best->threads))
+      best = &cost;
+  if (best == nullptr)
+    throw std::invalid_argument("calibration " + fingerprint + " has no " +
+                                cost_kernel_names()[static_cast<int>(kernel)] + " on " +
+                                std::to_string(threads) + " threads");
+  KernelCost cost = *best;
+  cost.threads = threads;
+  return cost;
+}
+
+std::string calibration_text(const std::vector<std::pair<std::string, std::string>>& about,
+                             const std::vector<KernelCost>& kernels) {
+  std::string text = "schema = \"" + std::string(kSchema) + "\"\n";
+  for (const auto& [name, value] : about) text += name + " = " + quoted(value) + "\n";
+  for (const KernelCost& cost : kernels) {
+    text += "\n[" + section_of(cost) + "]\n";
+    visit_numbers(cost, [&](const char* name, double number, const Range&) {
+      text += std::string(name) + " = " + number_text(number) + "\n";
+    });
+  }
+  return text;
+}
+
+Calibration parse_calibration(const std::string& source, const std::string& text) {
+  Fnv1a64 hash;
+  hash.add(text);
+  return {hex(hash.value()), Reader(source, text).run()};
+}
+
+std::string read_calibration(const std::string& option, const std::string& text) {
+  if (text == "shipped") return shipped().fingerprint;
+  if (is_fingerprint(text)) return text;
+  return known().add(parse_calibration(option + ": " + text, whole_text(option, text))).fingerprint;
+}
+
+const Calibration& known_calibration(const std::string& fingerprint) {
+  if (fingerprint == shipped().fingerprint) return shipped();
+  const std::scoped_lock lock(known().mutex);
+  const auto found = known().calibrations.find(fingerprint);
+  if (found == known().calibrations.end())
+    throw std::invalid_argument("calibration: " + fingerprint + " is not the shipped one, " +
+                                shipped().fingerprint + "; name its file: --calibration FILE");
+  return found->second;
+}
+
+KernelCost kernel_cost(const Settings& settings) {
+  return known_calibration(settings.text("calibration"))
+      .of(settings.word<CostKernel>(parameters::cost_kernel()), settings.integer("cost-threads"));
+}
+
+}  // namespace cleave

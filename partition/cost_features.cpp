@@ -1,0 +1,120 @@
+#include "partition/cost_features.h"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+
+namespace cleave {
+namespace {
+
+constexpr const char* kNames[] = {"schur-rows", "schur-bodies", "monolithic"};
+
+// Rows of a body to bodies of the same part, counted at the lower one, and to others.
+struct BodyRows {
+  int inside = 0, cut = 0;
+};
+
+BodyRows rows_of(const BodyGraph& graph, int body, std::span<const int> part_of_body) {
+  BodyRows rows{graph.fixed_rows(body), 0};
+  for (int k = graph.first(body); k < graph.last(body); ++k) {
+    const int other = graph.neighbour(k), weight = graph.weight(k, EdgeWeight::rows);
+    if (part_of_body[other] != part_of_body[body]) {
+      rows.cut += weight;
+    } else if (body < other) {
+      rows.inside += weight;
+    }
+  }
+  return rows;
+}
+
+void add_column(const EliminatedColumn& column, PartCost& part) {
+  part.factor_flops += column_flops(column.below);
+  part.blocks += 1 + column.below;
+  part.entries += 36.0 * (1 + column.below);
+}
+
+}  // namespace
+
+std::span<const char* const> cost_kernel_names() { return kNames; }
+
+CostCounter::CostCounter(const BodyGraph& graph, CostKernel kernel, double active_share)
+    : graph_(graph), kernel_(kernel), active_share_(active_share), eliminator_(graph) {}
+
+CostFeatures CostCounter::count(std::span<const int> part_of_body, int part_count) {
+  CostFeatures features;
+  features.kernel = kernel_;
+  if (kernel_ == CostKernel::schur_rows) {
+    count_parts(part_of_body, part_count, features);
+  } else if (kernel_ == CostKernel::schur_bodies) {
+    count_whole(part_of_body, part_count, features);
+  } else {
+    count_whole(std::vector<int>(graph_.body_count(), 0), graph_.body_count() > 0, features);
+  }
+  for (const PartCost& part : features.parts) features.rows += part.rows;
+  features.rows += features.cut_rows;
+  return features;
+}
+
+PartCost CostCounter::count_part(std::span<const int> bodies, std::span<const int> part_of_body) {
+  PartCost part;
+  const std::span<const EliminatedColumn> columns = eliminator_.run(bodies);
+  sides_.assign(columns.size(), 0.0);
+  for (std::size_t p = 0; p < columns.size(); ++p) {
+    const BodyRows rows = rows_of(graph_, columns[p].body, part_of_body);
+    ++part.bodies;
+    part.rows += rows.inside;
+    part.cut_rows += rows.cut;
+    sides_[p] += active_share_ * rows.cut;
+    const double sides = sides_[p];  // children stand before their parents
+    if (columns[p].parent >= 0) sides_[columns[p].parent] += sides;
+    add_column(columns[p], part);
+    part.form_flops += (36 + 72.0 * columns[p].below) * sides + 6 * sides * sides;
+    part.entries += 6 * sides;
+  }
+  return part;
+}
+
+void CostCounter::set_interface(int cut_rows, CostFeatures& features) const {
+  const double unknowns = active_share_ * cut_rows;
+  features.cut_rows = cut_rows;
+  features.interface_unknowns = unknowns;
+  features.interface_flops = unknowns * (unknowns + 1) * (2 * unknowns + 1) / 6;
+  features.interface_entries = unknowns * (unknowns + 1) / 2;
+}
+
+void CostCounter::count_parts(std::span<const int> part_of_body, int part_count, CostFeatures& features) {
+  std::vector<std::vector<int>> bodies(part_count);
+  for (int i = 0; i < graph_.body_count(); ++i) bodies[part_of_body[i]].push_back(i);
+  int sides = 0;
+  for (const std::vector<int>& part : bodies) {
+    features.parts.push_back(count_part(part, part_of_body));
+    sides += features.parts.back().cut_rows;
+  }
+  set_interface(sides / 2, features);
+}
+
+void CostCounter::count_whole(std::span<const int> part_of_body, int part_count, CostFeatures& features) {
+  features.parts.resize(part_count);
+  const std::vector<char> cover = cut_cover(graph_, part_of_body);
+  std::vector<int> bodies(graph_.body_count());
+  std::iota(bodies.begin(), bodies.end(), 0);
+  for (const int body : bodies) {
+    const BodyRows rows = rows_of(graph_, body, part_of_body);
+    PartCost& part = features.parts[part_of_body[body]];
+    ++part.bodies;
+    part.rows += rows.inside;
+    part.cut_rows += rows.cut;
+    features.cut_rows += rows.cut;
+    features.cover_bodies += cover[body];
+  }
+  features.cut_rows /= 2;
+  features.interface_unknowns = 6.0 * features.cover_bodies;
+  PartCost interface;
+  for (const EliminatedColumn& column : eliminator_.run(bodies, cover))
+    add_column(column, cover[column.body] ? interface : features.parts[part_of_body[column.body]]);
+  features.interface_flops = interface.factor_flops;
+  features.interface_entries = interface.entries;
+  features.interface_blocks = interface.blocks;
+}
+
+}  // namespace cleave

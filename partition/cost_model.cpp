@@ -1,0 +1,80 @@
+#include "partition/cost_model.h"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+namespace cleave {
+namespace {
+
+// A part is a task of schur-rows, which waits for the last of them. Other kernels deal out branches of one elimination
+// tree, whatever the parts.
+double local_work(const CostFeatures& features, int threads, double PartCost::*work) {
+  std::vector<double> tasks;
+  for (const PartCost& part : features.parts) tasks.push_back(part.*work);
+  return features.kernel == CostKernel::schur_rows
+             ? longest_first_makespan(std::move(tasks), threads)
+             : std::accumulate(tasks.begin(), tasks.end(), 0.0) / threads;
+}
+
+double sum(const CostFeatures& features, double PartCost::*of_part) {
+  double total = 0;
+  for (const PartCost& part : features.parts) total += part.*of_part;
+  return total;
+}
+
+using Group = CostGroup;
+
+constexpr CostTerm kTerms[] = {
+    {"us_per_solve", "to begin and end a solve", 1e-3, false, Group::sweeps_and_assembly,
+     [](const CostFeatures&, int) { return 1.0; }},
+    {"ns_per_row", "preparing and predicting, a row of the step", 1e-6, false, Group::sweeps_and_assembly,
+     [](const CostFeatures& f, int) { return static_cast<double>(f.rows); }},
+    {"ns_per_block", "symbolic analysis, a block of a factor", 1e-6, false, Group::analysis,
+     [](const CostFeatures& f, int) { return sum(f, &PartCost::blocks) + f.interface_blocks; }},
+    {"us_per_part", "dealing out, a part and pass", 1e-3, true, Group::sweeps_and_assembly,
+     [](const CostFeatures& f, int) { return static_cast<double>(f.parts.size()); }},
+    {"ns_per_row_and_pass", "assembling and checking, a row and pass", 1e-6, true, Group::sweeps_and_assembly,
+     [](const CostFeatures& f, int) { return static_cast<double>(f.rows); }},
+    {"ns_per_local_block", "factoring the parts, a block", 1e-6, true, Group::local,
+     [](const CostFeatures& f, int threads) { return local_work(f, threads, &PartCost::blocks); }},
+    {"ns_per_local_flop", "factoring the parts", 1e-6, true, Group::local,
+     [](const CostFeatures& f, int threads) { return local_work(f, threads, &PartCost::factor_flops); }},
+    {"ns_per_forming_flop", "forming a dense interface", 1e-6, true, Group::forming,
+     [](const CostFeatures& f, int threads) { return local_work(f, threads, &PartCost::form_flops); }},
+    {"ns_per_interface_flop", "factoring the interface", 1e-6, true, Group::interface,
+     [](const CostFeatures& f, int) { return f.interface_flops; }},
+    {"ns_per_entry", "substituting, an entry of a factor and pass", 1e-6, true, Group::substitution,
+     [](const CostFeatures& f, int) { return sum(f, &PartCost::entries) + f.interface_entries; }},
+};
+
+}  // namespace
+
+std::span<const CostTerm, kCostTerms> cost_terms() { return kTerms; }
+
+std::array<double, kCostTerms> unit_costs_ms(const CostFeatures& features, int threads,
+                                             double factorizations) {
+  std::array<double, kCostTerms> costs;
+  for (int t = 0; t < kCostTerms; ++t)
+    costs[t] =
+        kTerms[t].unit_ms * kTerms[t].count(features, threads) * (kTerms[t].of_a_pass ? factorizations : 1.0);
+  return costs;
+}
+
+double modelled_ms(const CostFeatures& features, const KernelCost& cost) {
+  const std::array<double, kCostTerms> units = unit_costs_ms(features, cost.threads, cost.factorizations);
+  return std::inner_product(units.begin(), units.end(), cost.cost.begin(), 0.0);
+}
+
+double longest_first_makespan(std::vector<double> work, int workers) {
+  std::sort(work.begin(), work.end(), std::greater<>());
+  std::vector<double> free_at(workers, 0.0);  // a heap, the earliest first
+  for (const double task : work) {
+    std::pop_heap(free_at.begin(), free_at.end(), std::greater<>());
+    free_at.back() += task;
+    std::push_heap(free_at.begin(), free_at.end(), std::greater<>());
+  }
+  return *std::max_element(free_at.begin(), free_at.end());
+}
+
+}  // namespace cleave

@@ -1,0 +1,53 @@
+// What a solve takes, modelled from counted work: a sum of terms, each the product of a count (cost_features.h) and of what
+// one of these costs on a machine, fitted by `cleave calibrate`.
+//
+//     t_s = terms of the solve + factorizations * terms of a pass
+//
+// A pass is a factorisation with its assembly, substitutions and checks. How often a strategy factors is not a matter of the
+// partition; what a strategy needed in the median stands in the calibration.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "partition/cost_features.h"
+
+namespace cleave {
+
+// What a solver's stages are told apart by, so that each is fitted to its own times.
+enum class CostGroup { sweeps_and_assembly, analysis, local, forming, interface, substitution };
+inline constexpr int kCostGroups = 6;
+
+struct CostTerm {
+  const char* name;  // of its coefficient, with the unit
+  const char* help;
+  double unit_ms;  // of the coefficient
+  bool of_a_pass;
+  CostGroup group;
+  double (*count)(const CostFeatures& features, int threads);
+};
+
+inline constexpr int kCostTerms = 10;
+std::span<const CostTerm, kCostTerms> cost_terms();
+
+// One kernel on so many threads.
+struct KernelCost {
+  CostKernel kernel = CostKernel::schur_rows;
+  int threads = 1;
+  double factorizations = 1;              // of a solve, expected
+  double active_share = 1;                // of the cut rows, expected in the interface of schur-rows
+  std::array<double, kCostTerms> cost{};  // >= 0, in the units of the terms
+};
+
+// Each term's part of a solve in ms were its coefficient 1.
+std::array<double, kCostTerms> unit_costs_ms(const CostFeatures& features, int threads,
+                                             double factorizations);
+
+// Of a solve with the expected number of factorisations.
+double modelled_ms(const CostFeatures& features, const KernelCost& cost);
+
+// The end of the last of tasks that are dealt out longest first, each to the worker that is free first (Graham, SIAM
+// Journal on Applied Mathematics 17, 1969). workers >= 1.
+double longest_first_makespan(std::vector<double> work, int workers);
+
+}  // namespace cleave

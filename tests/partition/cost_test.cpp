@@ -1,0 +1,302 @@
+// Counted work against its slow twin, the model against sums by hand, and calibrations as text.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <numeric>
+#include <stdexcept>
+
+#include "partition/calibration.h"
+#include "partition/cost_features.h"
+#include "partition/cost_model.h"
+#include "partition/partition_cost.h"
+#include "partition/registry.h"
+#include "tests/partition/slow_cost.h"
+#include "tests/partition/test_graphs.h"
+
+namespace cleave::partition_test {
+namespace {
+
+constexpr std::uint64_t kSeeds = 150;
+constexpr CostKernel kKernels[] = {CostKernel::schur_rows, CostKernel::schur_bodies, CostKernel::monolithic};
+
+void expect_near(double expected, double actual, const char* what) {
+  EXPECT_NEAR(expected, actual, 1e-9 * (1 + std::abs(expected))) << what;
+}
+
+void expect_equal(const CostFeatures& expected, const CostFeatures& actual) {
+  EXPECT_EQ(expected.rows, actual.rows);
+  EXPECT_EQ(expected.cut_rows, actual.cut_rows);
+  EXPECT_EQ(expected.cover_bodies, actual.cover_bodies);
+  expect_near(expected.interface_unknowns, actual.interface_unknowns, "interface_unknowns");
+  expect_near(expected.interface_flops, actual.interface_flops, "interface_flops");
+  expect_near(expected.interface_entries, actual.interface_entries, "interface_entries");
+  expect_near(expected.interface_blocks, actual.interface_blocks, "interface_blocks");
+  ASSERT_EQ(expected.parts.size(), actual.parts.size());
+  for (std::size_t k = 0; k < expected.parts.size(); ++k) {
+    SCOPED_TRACE("part " + std::to_string(k));
+    EXPECT_EQ(expected.parts[k].bodies, actual.parts[k].bodies);
+    EXPECT_EQ(expected.parts[k].rows, actual.parts[k].rows);
+    EXPECT_EQ(expected.parts[k].cut_rows, actual.parts[k].cut_rows);
+    expect_near(expected.parts[k].factor_flops, actual.parts[k].factor_flops, "factor_flops");
+    expect_near(expected.parts[k].form_flops, actual.parts[k].form_flops, "form_flops");
+    expect_near(expected.parts[k].blocks, actual.parts[k].blocks, "blocks");
+    expect_near(expected.parts[k].entries, actual.parts[k].entries, "entries");
+  }
+}
+
+TEST(CostFeatures, are_those_of_the_slow_twin) {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const Bodies bodies = random_bodies(seed);
+    SCOPED_TRACE(describe(bodies) + ", seed " + std::to_string(seed));
+    const BodyGraph graph = bodies.graph();
+    Random random(seed);
+    const Partition partition = random_partition(random, graph.body_count());
+    const double share = random.real(0, 1);
+    for (const CostKernel kernel : kKernels) {
+      SCOPED_TRACE(cost_kernel_names()[static_cast<int>(kernel)]);
+      expect_equal(slow_cost_features(graph, partition.part_of_body, partition.part_count, kernel, share),
+                   CostCounter(graph, kernel, share).count(partition.part_of_body, partition.part_count));
+    }
+  }
+}
+
+// 0 - 1 - 2 in a row, and 3 that touches only the ground.
+TEST(CostFeatures, by_hand) {
+  const std::vector<ConstraintLink> links = {{0, 1, 3}, {1, 2, 3}, {0, -1, 3}, {3, -1, 6}};
+  const BodyGraph graph(std::vector{1.0, 1.0, 1.0, 1.0}, links);
+  const CostFeatures features =
+      CostCounter(graph, CostKernel::schur_rows, 1).count(std::vector{0, 0, 1, 1}, 2);
+  EXPECT_EQ(features.rows, 15);
+  EXPECT_EQ(features.cut_rows, 3);
+  EXPECT_EQ(features.parts[0].rows, 6);
+  EXPECT_EQ(features.parts[1].rows, 6);
+  const double one = 1 + 4 + 9 + 16 + 25 + 36,
+               two = 49 + 64 + 81 + 100 + 121 + 144;  // columns of 6 and of 12
+  EXPECT_EQ(features.parts[0].factor_flops, two + one);
+  EXPECT_EQ(features.parts[1].factor_flops, one + one);
+  EXPECT_EQ(features.parts[1].form_flops, 36 * 3 + 6 * 9);
+  EXPECT_EQ(features.interface_flops, 1 + 4 + 9);
+}
+
+TEST(Elimination, of_a_path_fills_nothing) {
+  std::vector<ConstraintLink> links;
+  for (int k = 0; k + 1 < 50; ++k) links.push_back({k, k + 1, 1});
+  const BodyGraph graph(std::vector<double>(50, 1.0), links);
+  std::vector<int> bodies(50);
+  std::iota(bodies.begin(), bodies.end(), 0);
+  Eliminator eliminator(graph);
+  int blocks = 0;
+  for (const EliminatedColumn& column : eliminator.run(bodies)) blocks += column.below;
+  EXPECT_EQ(blocks, 49);
+}
+
+TEST(CostModel, is_the_sum_of_its_terms) {
+  Random random(7);
+  const BodyGraph graph = pile(random, 5, 5, 3).graph();
+  const Partition partition = random_partition(random, graph.body_count());
+  const CostFeatures features =
+      CostCounter(graph, CostKernel::schur_rows, 0.5).count(partition.part_of_body, partition.part_count);
+  KernelCost cost{CostKernel::schur_rows, 1, 3, 0.5, {}};
+  std::iota(cost.cost.begin(), cost.cost.end(), 1.0);
+  double local = 0, forming = 0, blocks = 0, entries = features.interface_entries;
+  for (const PartCost& part : features.parts) {
+    local += part.factor_flops;
+    forming += part.form_flops;
+    blocks += part.blocks;
+    entries += part.entries;
+  }
+  const double once_ns = 1e3 * 1 + 2 * features.rows + 3 * blocks;
+  const double pass_ns = 4e3 * features.parts.size() + 5 * features.rows + 6 * blocks + 7 * local +
+                         8 * forming + 9 * features.interface_flops + 10 * entries;
+  expect_near(1e-6 * (once_ns + 3 * pass_ns), modelled_ms(features, cost), "ms");
+}
+
+TEST(PartitionCost, stays_what_it_is_from_scratch) {
+  for (const CostKernel kernel : {CostKernel::schur_rows, CostKernel::schur_bodies}) {
+    int moves = 0;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      Random random(seed);
+      const BodyGraph graph = pile(random, 4, 4, 2).graph();
+      Partition partition = random_partition(random, graph.body_count());
+      KernelCost cost{kernel, random.integer(1, 2), 3, 0.4, {}};
+      std::iota(cost.cost.begin(), cost.cost.end(), 1.0);
+      PartitionCost time(graph, cost, partition);
+      for (int k = 0; k < 60; ++k) {
+        const int body = random.integer(0, graph.body_count() - 1);
+        const int part = random.integer(0, partition.part_count - 1), own = partition.part_of_body[body];
+        if (part == own || part_sizes(partition)[own] == 1) continue;
+        const double before = time.ms();
+        const bool moved = time.move_if_cheaper(body, part);
+        if (moved) partition.part_of_body[body] = part;
+        moves += moved;
+        EXPECT_EQ(moved, time.ms() < before);
+        ASSERT_EQ(
+            time.ms(),
+            modelled_ms(CostCounter(graph, kernel, 0.4).count(partition.part_of_body, partition.part_count),
+                        cost))
+            << "seed " << seed;
+      }
+    }
+    EXPECT_GT(moves, 100);
+  }
+}
+
+TEST(CostModel, deals_the_longest_task_out_first) {
+  EXPECT_EQ(longest_first_makespan({2, 3, 4, 6}, 2), 8);            // 6 + 2, 4 + 3
+  EXPECT_EQ(longest_first_makespan({5, 5, 4, 4, 3, 3, 3}, 3), 11);  // not the best, which is 9
+  EXPECT_EQ(longest_first_makespan({5, 1}, 8), 5);
+  EXPECT_EQ(longest_first_makespan({}, 2), 0);
+}
+
+// Every candidate of auto, made and modelled by itself.
+std::string least_choice(const BodyGraph& graph, const KernelCost& cost) {
+  std::string best;
+  double least_ms = 0;
+  const auto look = [&](const std::string& partitioner, int max_bodies, const std::string& refiner) {
+    Partition parts = make_partitioner(partitioner)->run(graph);
+    make_refiner(refiner)->run(graph, max_bodies, parts);
+    const double ms = modelled_ms(
+        CostCounter(graph, cost.kernel, cost.active_share).count(parts.part_of_body, parts.part_count), cost);
+    if (best.empty() || ms < least_ms) best = partitioner + "+" + refiner, least_ms = ms;
+  };
+  look("single", graph.body_count(), "none");
+  for (const int max_bodies : {10, 25, 50, 100, 200})
+    for (const std::string partitioner : {"mindp", "mix", "multilevel"})
+      for (const char* refiner : {"none", "fm"})
+        if (max_bodies < graph.body_count())
+          look(partitioner + "@max-bodies=" + std::to_string(max_bodies), max_bodies, refiner);
+  return best + "/" + cost_kernel_names()[static_cast<int>(cost.kernel)];
+}
+
+TEST(Auto, takes_what_is_cheapest_by_the_model) {
+  const Calibration& shipped = known_calibration(read_calibration("calibration", "shipped"));
+  for (const CostKernel kernel : {CostKernel::schur_rows, CostKernel::schur_bodies}) {
+    for (const int threads : {1, 2}) {
+      for (const int height : {1, 3, 9}) {
+        Random random(3);
+        const BodyGraph graph = pile(random, 5, 5, height).graph();
+        const Partition parts = make_partitioner("auto@cost-kernel=" +
+                                                 std::string(cost_kernel_names()[static_cast<int>(kernel)]) +
+                                                 "@cost-threads=" + std::to_string(threads))
+                                    ->run(graph);
+        EXPECT_EQ(parts.choice, least_choice(graph, shipped.of(kernel, threads)));
+      }
+    }
+  }
+}
+
+// A calibration in which only factoring the parts costs anything makes them small, one in which only parts cost, one.
+TEST(Auto, follows_the_calibration) {
+  Random random(3);
+  const BodyGraph graph = pile(random, 6, 6, 4).graph();
+  const auto choice_of = [&](int term) {
+    KernelCost cost{CostKernel::schur_rows, 1, 1, 1, {}};
+    cost.cost[term] = 1;
+    const std::string path = testing::TempDir() + "auto_test.toml";
+    std::ofstream(path, std::ios::binary) << calibration_text({}, {cost});
+    const std::string fingerprint = read_calibration("--calibration", path);
+    std::remove(path.c_str());
+    return make_partitioner("auto@calibration=" + fingerprint)->run(graph).choice;
+  };
+  EXPECT_EQ(choice_of(3), "single+none/schur-rows");
+  EXPECT_NE(choice_of(6).find("max-bodies=10"), std::string::npos) << choice_of(6);
+}
+
+TEST(Auto, chooses_again_when_the_graph_has_doubled) {
+  Random random(3);
+  const BodyGraph small = pile(random, 4, 4, 2).graph(), large = pile(random, 6, 6, 12).graph();
+  const BodyGraph empty(std::vector(5, 1.0), {});
+  const std::unique_ptr<Partitioner> once = make_partitioner("auto"), fixed = make_partitioner("auto");
+  EXPECT_EQ(once->run(empty).choice, "single+none/schur-rows");  // nothing to choose by
+  const std::string of_small = once->run(small).choice, of_large = once->run(large).choice;
+  EXPECT_EQ(of_large, make_partitioner("auto")->run(large).choice);
+  EXPECT_EQ(once->run(small).choice, of_large);  // kept
+  const std::string other = of_large == of_small ? "mix@max-bodies=100+fm/schur-rows" : of_small;
+  fixed->keep_choice(other);
+  EXPECT_EQ(fixed->run(large).choice, other);
+  EXPECT_THROW(fixed->keep_choice("mix@max-bodies=99+fm/schur-rows"), std::invalid_argument);
+  EXPECT_THROW(make_partitioner("mix")->keep_choice(other), std::invalid_argument);
+}
+
+std::vector<KernelCost> some_costs() {
+  KernelCost one{CostKernel::schur_rows, 1, 6, 0.25, {}};
+  std::iota(one.cost.begin(), one.cost.end(), 0.5);
+  KernelCost two = one;
+  two.threads = 2;
+  two.cost[0] = 1e-7;
+  return {one, two};
+}
+
+TEST(Calibration, reads_what_it_writes) {
+  const std::string text = calibration_text({{"cpu", "some [processor] = fast"}}, some_costs());
+  const Calibration read = parse_calibration("text", text);
+  ASSERT_EQ(read.kernels.size(), 2u);
+  for (int k : {0, 1}) {
+    EXPECT_EQ(read.kernels[k].threads, k + 1);
+    EXPECT_EQ(read.kernels[k].factorizations, 6);
+    EXPECT_EQ(read.kernels[k].active_share, 0.25);
+    EXPECT_EQ(read.kernels[k].cost, some_costs()[k].cost);
+  }
+  EXPECT_EQ(read.fingerprint, parse_calibration("text", text).fingerprint);
+  EXPECT_NE(read.fingerprint, parse_calibration("text", "# seen\n" + text).fingerprint);
+}
+
+TEST(Calibration, takes_the_most_threads_that_were_calibrated) {
+  const Calibration read = parse_calibration("text", calibration_text({}, some_costs()));
+  EXPECT_EQ(read.of(CostKernel::schur_rows, 1).cost[0], 0.5);
+  EXPECT_EQ(read.of(CostKernel::schur_rows, 8).cost[0], 1e-7);
+  EXPECT_EQ(read.of(CostKernel::schur_rows, 8).threads, 8);
+  EXPECT_THROW(read.of(CostKernel::monolithic, 1), std::invalid_argument);
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_calibration("text", text);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  return text.replace(text.find(what), what.size(), by);
+}
+
+TEST(Calibration, names_the_line_that_is_wrong) {
+  const std::string good = calibration_text({}, some_costs());
+  EXPECT_EQ(error_of(good), "");
+  EXPECT_EQ(error_of(""), "text is no calibration: schema = \"cleave-calibration-1\" is missing");
+  EXPECT_EQ(error_of(replaced(good, "schur-rows", "schur-row")),
+            "text: line 3: 'schur-row' is unknown (did you mean 'schur-rows'?); choices: schur-rows, "
+            "schur-bodies, monolithic");
+  EXPECT_EQ(error_of(replaced(good, "active_share = 0.25", "active_share = 2")),
+            "text: line 5: active_share: 2 is not in [0, 1]");
+  EXPECT_EQ(error_of(replaced(good, "active_share = 0.25\n", "")),
+            "text lacks active_share of [schur-rows.threads-1]");
+  EXPECT_EQ(error_of(replaced(good, "threads-2", "threads-1")),
+            "text: line 17: [schur-rows.threads-1] stands twice");
+  EXPECT_EQ(error_of(replaced(good, "us_per_solve = 0.5", "us_per_solve = -1")),
+            "text: line 6: us_per_solve: -1 is not in [0, inf)");
+  EXPECT_EQ(error_of(replaced(good, "us_per_solve", "us_per_solves")).substr(0, 43),
+            "text: line 6: 'us_per_solves' is unknown (d");
+}
+
+TEST(Calibration, is_known_once_it_was_read) {
+  const std::string shipped = read_calibration("--calibration", "shipped");
+  EXPECT_EQ(known_calibration(shipped).fingerprint, shipped);
+  for (const CostKernel kernel : kKernels)
+    for (const int threads : {1, 2})
+      EXPECT_EQ(known_calibration(shipped).of(kernel, threads).threads, threads);
+  EXPECT_THROW(known_calibration("0123456789abcdef"), std::invalid_argument);
+  EXPECT_THROW(read_calibration("--calibration", "no such file"), std::invalid_argument);
+  const std::string path = testing::TempDir() + "calibration_test.toml";
+  std::ofstream(path, std::ios::binary) << calibration_text({}, some_costs());
+  const std::string read = read_calibration("--calibration", path);
+  std::remove(path.c_str());
+  EXPECT_EQ(known_calibration(read).kernels.size(), 2u);
+}
+
+}  // namespace
+}  // namespace cleave::partition_test

@@ -1,0 +1,45 @@
+"""The regret of auto as scripts/partition_regret counts it."""
+import pathlib
+import sys
+import unittest
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
+from cleave_scripts.measurements import regret  # noqa: E402
+
+
+def rows_of(times, scene="pile"):
+    """times: {(partitioner, refiner): [(t_pr, t_s) a round, from round 1]}; one step a round."""
+    return [{"scene": scene, "solver": "schur", "partitioner": partitioner, "refiner": refiner, "round": number,
+             "t_pr_ms": str(t_pr), "t_s_ms": str(t_s), "auto_choice": "mix+fm/schur-rows" if partitioner == "auto" else "-"}
+            for (partitioner, refiner), rounds in times.items() for number, (t_pr, t_s) in enumerate(rounds, 1)]
+
+
+TIMES = {("mindp", "none"): [(0, 12), (0, 12)], ("mix", "fm"): [(1, 7), (1, 9)], ("bfs", "fm"): [(1, 9), (1, 1)],
+         ("auto", "none"): [(1, 4), (2, 8.5)], ("auto", "fm"): [(0, 1), (0, 1)]}
+
+
+class RegretTest(unittest.TestCase):
+    def one(self, **changes):
+        (found,) = regret.regrets(rows_of({**TIMES, **changes.get("times", {})}))
+        return found
+
+    def test_the_best_cell_is_chosen_by_the_odd_rounds_and_compared_by_the_even_ones(self):
+        found = self.one()
+        self.assertEqual((found.best, found.best_ms, found.baseline_ms, found.auto_ms), ("mix+fm", 10, 12, 10.5))
+        self.assertAlmostEqual(found.regret, 0.05)
+        self.assertTrue(found.holds)
+        self.assertEqual(found.choices, ["mix+fm/schur-rows"])
+
+    def test_more_than_a_tenth_does_not_hold_nor_does_what_mindp_does_better(self):
+        self.assertFalse(self.one(times={("auto", "none"): [(0, 1), (0, 11.1)]}).holds)
+        self.assertFalse(self.one(times={("mindp", "none"): [(0, 12), (0, 10.4)]}).holds)
+
+    def test_steps_of_a_round_are_averaged_and_scenes_stand_apart(self):
+        twice = rows_of(TIMES) + rows_of({cell: [(0, 0)] * 2 for cell in TIMES}) + rows_of(TIMES, "tower")
+        pile, tower = regret.regrets(twice)
+        self.assertEqual((pile.scene, pile.auto_ms), ("pile", 10.5 / 2))
+        self.assertEqual((tower.scene, tower.auto_ms), ("tower", 10.5))
+
+
+if __name__ == "__main__":
+    unittest.main()
