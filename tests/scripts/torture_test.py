@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import types
 import unittest
 
 import h5py
@@ -16,7 +17,7 @@ import numpy as np
 from synthetic import ROOT
 
 from cleave_scripts.results.errors import ResultError
-from cleave_scripts.torture import endings
+from cleave_scripts.torture import endings, two_processes
 from cleave_scripts.torture.cell_edits import changed_cell
 from cleave_scripts.torture.changes_of_values import ANY
 from cleave_scripts.torture.child import Ending
@@ -38,6 +39,28 @@ def ball(side=0.0):
             "row_body": np.array([[0, -1]] * 2), "jacobian": np.array([[0, 0, 1.0] + [0] * 9, [1.0] + [0] * 11]),
             "rhs": np.zeros(2), "compliance": np.full(2, COMPLIANCE),
             "lower": np.array([0, -MU * LOAD]), "upper": np.array([np.inf, MU * LOAD])}
+
+
+class TwoProcessesTest(unittest.TestCase):
+
+    def findings(self, *, forced, refused, said):
+        """Of two processes 11 and 12, the second forced, of which one is refused."""
+        found = []
+        started = [("replay", types.SimpleNamespace(pid=11), ["--force"] if forced else []),
+                   ("run", types.SimpleNamespace(pid=12), ["--force"])]
+        codes = [endings.BAD_INPUT if number == refused else endings.DONE for number in (0, 1)]
+        trial = types.SimpleNamespace(find=lambda what, detail="": found.append(what))
+        two_processes.check_refusal(trial, started, [types.SimpleNamespace(code=code, err=said) for code in codes], False)
+        return found
+
+    def test_the_refused_one_is_told_who_holds_the_directory(self):
+        full, held = "--out: 'out' already holds steps.csv", "'out' is held by process {}"
+        self.assertEqual(self.findings(forced=False, refused=0, said=held.format(12)), [])
+        self.assertEqual(self.findings(forced=False, refused=0, said=full), [])  # overtaken
+        for forced, refused, said in ((False, 0, "no"), (True, 0, full), (False, 1, full), (False, 1, held.format(12))):
+            with self.subTest(said, forced=forced, refused=refused):
+                self.assertEqual(self.findings(forced=forced, refused=refused, said=said),
+                                 ["the refused process is not told who holds the directory"])
 
 
 class JudgeTest(unittest.TestCase):

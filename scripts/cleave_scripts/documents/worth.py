@@ -1,10 +1,11 @@
 """What partitions are worth: which solver is fastest with its best partition, and what taking over parts from step to step saves."""
 from cleave_scripts.documents.stored import need
-from cleave_scripts.measurements import partition_over_time, partition_worth
+from cleave_scripts.measurements import partition_over_time, partition_worth, regret
 from cleave_scripts.table import text
 
 OVER_TIME = ("partition_over_time.csv", "scripts/partition_over_time")
 WORTH = ("partition_worth.csv", "scripts/partition_worth")
+REGRET = ("partition_regret.csv", "scripts/partition_regret")
 SHOWN_WORKERS = (8, 64)
 
 
@@ -51,4 +52,14 @@ def worth(stored):
             text.table(["", *partition_worth.NAMES.values(), "two threads", *(f"{workers} workers" for workers in SHOWN_WORKERS)], lines))
 
 
-BLOCKS = {"over_time": over_time, "worth": worth}
+def regret_of_auto(stored):
+    """auto against the best cell of its grid."""
+    found = regret.regrets(need(stored.table(*REGRET), "auto", "auto_choice"))
+    lines = [[f"{item.scene.replace('_', ' ')}, {item.solver}", item.best, *map(text.number, (item.best_ms, item.baseline_ms, item.auto_ms)),
+              f"{100 * item.regret:+.0f} %", ", ".join(item.choices), "yes" if item.holds else "no"] for item in found]
+    return (f"t_pr + t_s, ms, one thread ({stored.origin(REGRET[0])}); `auto` holds where it takes at most {1 + regret.MOST_REGRET:g} times what the "
+            f"best cell takes and no more than {regret.BASELINE}. The time of choosing, once a scene, is left out:\n\n" +
+            text.table(["", "best cell", "its time", regret.BASELINE, "auto", "regret", "auto chose", "holds"], lines))
+
+
+BLOCKS = {"over_time": over_time, "worth": worth, "regret": regret_of_auto}
