@@ -158,6 +158,14 @@ class VerdictTest(unittest.TestCase):
         item = judged(self.directory)["the Karger partitioner is not competitive", "Rock Pile"]
         self.assertEqual(item.verdict, verdicts.REPRODUCED)
 
+    def test_karger_is_judged_in_the_run_that_has_it(self):
+        self.write()
+        rows = rows_of("log_tower", ("mindp", "mix"), t_s_ms=9.0, t_s_min_ms=9.0)
+        rows += rows_of("log_tower", ("karger",), t_s_ms=8.0, t_s_min_ms=8.0)
+        write_run(self.directory / "karger" / "log_tower", rows)
+        item = judged(self.directory)["the Karger partitioner is not competitive", "Log Tower"]
+        self.assertEqual((item.verdict, round(item.ours, 3)), (verdicts.NOT_REPRODUCED, -0.125))
+
     def test_mass_ratio_and_any_condition_column_that_comes(self):
         self.write()
         found = judged(self.directory)

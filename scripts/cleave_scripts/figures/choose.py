@@ -82,6 +82,20 @@ def most_steps(blocks, scene, solver, partitioner):
     ]
 
 
+def same_setup_with(blocks, scene, solver, partitioners):
+    """The blocks, repeated runs of the setup that `preference` puts first, with rows of all these partitioners; or none."""
+    parts = [
+        part for block in blocks
+        if block.scene == scene and not block.is_scaling and (part := block.of_solver(solver)) is not None
+        and set(partitioners) <= set(part.rows["partitioner"])
+    ]
+    parts.sort(key=preference)
+    return [
+        part for part in parts
+        if (part.setup, part.threads, part.label) == (parts[0].setup, parts[0].threads, parts[0].label)
+    ]
+
+
 def first_runs(group):
     """All rows of a group, each step of a seed once: where a run was repeated, its first."""
     rows = pandas.concat([part.rows for part in group], ignore_index=True)

@@ -5,10 +5,12 @@ import math
 import pandas
 
 from cleave_scripts.figures.claim_values import noise, tables, value
-from cleave_scripts.figures.claims import LONGEST_LOG_TOWER, ROCKS, all_claims
+from cleave_scripts.figures.choose import same_setup_with
+from cleave_scripts.figures.claims import KARGER_RIVALS, LONGEST_LOG_TOWER, ROCKS, all_claims, karger_place
 from cleave_scripts.figures.times_by_size import sizes
 from cleave_scripts.figures.times_by_step import longest_runs
 from cleave_scripts.figures.tree import NoData
+from cleave_scripts.results.paper import SCENES
 
 FEWEST_STEPS = 5  # fewer measured steps tell nothing about noise
 REPRODUCED, NOT_REPRODUCED, WITHIN_NOISE, OPEN = "reproduced", "not reproduced", "within noise", "open"
@@ -62,6 +64,9 @@ def judge_all(data, paper):
         places[LONGEST_LOG_TOWER] = longest_runs(data)
     except NoData:
         pass  # its claims stay open
+    for scene in SCENES:
+        if found := same_setup_with(data.blocks, scene, data.solver, ("karger", *KARGER_RIVALS)):
+            places[karger_place(scene)] = found
     columns = {column for group in data.main.values() for part in group for column in part.rows.columns}
     return [judge(claim, places, paper) for claim in all_claims(paper, list(rock_sizes), columns)]
 

@@ -4,7 +4,7 @@ import dataclasses
 from cleave_scripts.results.paper import SCENES
 
 REPORT = "report"  # one directory for all that scripts/report draws
-REPORT_RUNS = ("scaling", "one_thread", "schur_bodies", "solvers", "every_step")
+REPORT_RUNS = ("scaling", "one_thread", "schur_bodies", "solvers", "every_step", "karger")
 RUN_FILES = ("manifest.json", "steps.csv")
 
 
