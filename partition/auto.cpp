@@ -2,8 +2,8 @@
 //
 // Candidates are one part with all bodies, and every partitioner, max-bodies and refiner of the table below whose parts
 // are smaller than the whole; the first of equal ones is taken, so that one subsystem wins where splitting buys nothing.
-// Looking takes longer than many a solve, so one choice serves a scene: it is made on the first graph with an edge and
-// again on one with twice as many edges. What was chosen is Partition::choice.
+// Looking takes longer than many a solve, so a choice serves while the graph is of its size: it is made on the first graph
+// with an edge, and again on one whose edges are a quarter more or a fifth fewer. What was chosen is Partition::choice.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -22,6 +22,7 @@ namespace {
 constexpr std::array kPartitioners = {"mindp", "mix", "multilevel"};
 constexpr std::array kMaxBodies = {10, 25, 50, 100, 200};
 constexpr std::array kRefiners = {"none", "fm"};
+constexpr double kOtherSize = 1.25;  // a ratio of edges from which on a choice is made again
 
 // "mix@max-bodies=50+fm".
 struct Candidate {
@@ -59,17 +60,21 @@ class Auto final : public Partitioner {
     if (k == candidates_.size())
       refuse("choice of auto", choice, "one that it makes with cost-kernel " + kernel_);
     chosen_ = k;
-    edges_ = std::numeric_limits<long>::max() / 2;  // no graph has twice as many
+    kept_ = true;
   }
 
  private:
   Partition do_run(const BodyGraph& graph) const override {
-    const bool first = !chosen_ && graph.edge_count() > 0;
-    if (first || (chosen_ && graph.edge_count() >= 2 * edges_)) choose(graph);
+    if (!kept_ && graph.edge_count() > 0 && is_of_other_size(graph.edge_count())) choose(graph);
     const std::size_t chosen = chosen_.value_or(0);
     Partition parts = split(candidates_[chosen], graph);
     parts.choice = named(chosen);
     return parts;
+  }
+
+  // As every graph is to a choice that was not made yet, on 0 edges.
+  bool is_of_other_size(double edges) const {
+    return edges >= kOtherSize * edges_ || kOtherSize * edges <= edges_;
   }
 
   void choose(const BodyGraph& graph) const {
@@ -91,7 +96,8 @@ class Auto final : public Partitioner {
   std::vector<Candidate> candidates_;
   // The choice that serves, and the edges of the graph that it was made on.
   mutable std::optional<std::size_t> chosen_;
-  mutable long edges_ = 0;
+  mutable double edges_ = 0;
+  bool kept_ = false;  // one that was made before
 };
 
 }  // namespace
