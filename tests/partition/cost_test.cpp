@@ -187,35 +187,51 @@ TEST(Auto, takes_what_is_cheapest_by_the_model) {
   }
 }
 
+// auto where one term of the model costs and nothing else does.
+std::unique_ptr<Partitioner> auto_by_term(int term) {
+  KernelCost cost{CostKernel::schur_rows, 1, 1, 1, {}};
+  cost.cost[term] = 1;
+  const std::string path = testing::TempDir() + "auto_test.toml";
+  std::ofstream(path, std::ios::binary) << calibration_text({}, {cost});
+  const std::string fingerprint = read_calibration("--calibration", path);
+  std::remove(path.c_str());
+  return make_partitioner("auto@calibration=" + fingerprint);
+}
+
 // A calibration in which only factoring the parts costs anything makes them small, one in which only parts cost, one.
 TEST(Auto, follows_the_calibration) {
   Random random(3);
   const BodyGraph graph = pile(random, 6, 6, 4).graph();
-  const auto choice_of = [&](int term) {
-    KernelCost cost{CostKernel::schur_rows, 1, 1, 1, {}};
-    cost.cost[term] = 1;
-    const std::string path = testing::TempDir() + "auto_test.toml";
-    std::ofstream(path, std::ios::binary) << calibration_text({}, {cost});
-    const std::string fingerprint = read_calibration("--calibration", path);
-    std::remove(path.c_str());
-    return make_partitioner("auto@calibration=" + fingerprint)->run(graph).choice;
-  };
+  const auto choice_of = [&](int term) { return auto_by_term(term)->run(graph).choice; };
   EXPECT_EQ(choice_of(3), "single+none/schur-rows");
   EXPECT_NE(choice_of(6).find("max-bodies=10"), std::string::npos) << choice_of(6);
 }
 
-TEST(Auto, chooses_again_when_the_graph_has_doubled) {
+TEST(Auto, chooses_again_where_the_graph_is_of_another_size) {
   Random random(3);
-  const BodyGraph small = pile(random, 4, 4, 2).graph(), large = pile(random, 6, 6, 12).graph();
+  const BodyGraph small = pile(random, 2, 2, 2).graph(), large = pile(random, 6, 6, 12).graph();
+  const BodyGraph alike = pile(random, 6, 6, 11).graph();
+  ASSERT_LT(large.edge_count(), 1.25 * alike.edge_count());
   const BodyGraph empty(std::vector(5, 1.0), {});
-  const std::unique_ptr<Partitioner> once = make_partitioner("auto"), fixed = make_partitioner("auto");
-  EXPECT_EQ(once->run(empty).choice, "single+none/schur-rows");  // nothing to choose by
-  const std::string of_small = once->run(small).choice, of_large = once->run(large).choice;
-  EXPECT_EQ(of_large, make_partitioner("auto")->run(large).choice);
-  EXPECT_EQ(once->run(small).choice, of_large);  // kept
-  const std::string other = of_large == of_small ? "mix@max-bodies=100+fm/schur-rows" : of_small;
+  const std::unique_ptr<Partitioner> once = auto_by_term(6);
+  const std::string nothing = "single+none/schur-rows";
+  EXPECT_EQ(once->run(empty).choice, nothing);
+  const std::string of_large = once->run(large).choice;
+  ASSERT_NE(of_large, nothing);
+  EXPECT_EQ(once->run(alike).choice, of_large);
+  EXPECT_EQ(once->run(empty).choice, of_large);  // nothing to choose by
+  EXPECT_EQ(once->run(small).choice, nothing);   // too few bodies to split
+  EXPECT_EQ(once->run(alike).choice, auto_by_term(6)->run(alike).choice);
+}
+
+TEST(Auto, keeps_a_choice_that_was_made_before) {
+  Random random(3);
+  const BodyGraph graph = pile(random, 6, 6, 12).graph();
+  const std::string other = "mix@max-bodies=100+fm/schur-rows";
+  ASSERT_NE(make_partitioner("auto")->run(graph).choice, other);
+  const std::unique_ptr<Partitioner> fixed = make_partitioner("auto");
   fixed->keep_choice(other);
-  EXPECT_EQ(fixed->run(large).choice, other);
+  EXPECT_EQ(fixed->run(graph).choice, other);
   EXPECT_THROW(fixed->keep_choice("mix@max-bodies=99+fm/schur-rows"), std::invalid_argument);
   EXPECT_THROW(make_partitioner("mix")->keep_choice(other), std::invalid_argument);
 }
