@@ -8,8 +8,9 @@
 namespace cleave {
 namespace {
 
-constexpr double kLeastPivot = 1e-12;  // of the largest entry of the entering column, or of 1
-constexpr double kTie = 1e-12;         // ratios that differ by less are rounding of equal ones
+constexpr double kLeastPivot =
+    1e-12;  // of the largest entry of the entering column, or of 1; 1e-10 leaves stiff rows out
+constexpr double kTie = 1e-12;  // ratios that differ by less are rounding of equal ones
 
 }  // namespace
 

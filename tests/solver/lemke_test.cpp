@@ -134,6 +134,18 @@ TEST(LemkeTest, ContradictionsEndInAStatusThatSaysSo) {
   EXPECT_NEAR(fine.solution.velocity[2], 1, 1e-12);
 }
 
+// Many redundant rows of hardly any compliance: more than rounding, less than a pivot can tell from it.
+TEST(LemkeTest, WherePivotsDrownInRoundingItSaysSo) {
+  int missed = 0;
+  for (const double cfm : {1e-9, 1e-10, 1e-11, 1e-12}) {
+    const StepProblem problem = make_pile(0, {.columns = 2, .rows = 2, .layers = 3, .cfm = cfm});
+    const Solved solved = solve_by("lemke", problem);
+    EXPECT_TRUE(is_honest(problem, solved.summary, solved.solution)) << "cfm " << cfm;
+    if (solved.summary.status != SolveStatus::ok) ++missed;
+  }
+  EXPECT_GE(missed, 1);
+}
+
 TEST(LemkeTest, MoreRowsThanAllowedAreRefusedByName) {
   const StepProblem problem = make_pile(1, {.columns = 1, .rows = 1, .layers = 2});
   ASSERT_EQ(problem.row_count(), 24);
