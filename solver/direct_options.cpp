@@ -47,8 +47,18 @@ const Parameter& sweeps() {
                                    .kind = Kind::integer,
                                    .default_value = "5",
                                    .range = {0, kInfinity},
-                                   .help = "Gauss-Seidel sweeps of pgs",
+                                   .help = "sweeps over all rows, or iterations, of the iterative baselines",
                                    .source = "Catto 2005"};
+  return parameter;
+}
+
+const Parameter& lemke_max_rows() {
+  static const Parameter parameter{.name = "lemke-max-rows",
+                                   .kind = Kind::integer,
+                                   .default_value = "500",
+                                   .range = {0, kInfinity},
+                                   .help = "rows above which lemke refuses a step: its time grows with their cube",
+                                   .source = "solver/baselines/lemke.cpp"};
   return parameter;
 }
 

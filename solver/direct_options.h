@@ -22,6 +22,7 @@ const Parameter& max_iterations();
 const Parameter& predictor_sweeps();
 const Parameter& reuse_analysis();
 const Parameter& sweeps();
+const Parameter& lemke_max_rows();
 const Parameter& arity();
 
 }  // namespace parameters

@@ -34,7 +34,8 @@ std::string cell_text(ColumnOf, std::uint64_t value) { return std::to_string(val
 // In the order in which they came.
 constexpr std::string_view kLate[] = {"partition_seed",  "trials",      "karger_method", "ufactor",
                                       "scotch_strategy", "effort",      "patience",      "merge_small",
-                                      "split",           "calibration", "cost_kernel",   "cost_threads"};
+                                      "split",           "calibration", "cost_kernel",   "cost_threads",
+                                      "lemke_max_rows"};
 
 // 0 for all that are not late.
 std::ptrdiff_t late_rank(const std::string& column) {

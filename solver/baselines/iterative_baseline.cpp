@@ -8,14 +8,15 @@ std::string IterativeBaseline::refuse_set(const StepProblem& problem) {
   return find_set_refusal("solver", name_, problem);
 }
 
-SolveSummary IterativeBaseline::do_solve(const StepProblem& problem, const Parts&, Solution& solution) {
+SolveSummary IterativeBaseline::do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) {
   SolveSummary summary;
   summary.strategy = name_;
   summary.kernel = "-";
   clock_.start();
   {
     StageTimer timer(clock_, Stage::analyze);
-    step_.prepare(problem);
+    step_.prepare(problem, &tasks_);
+    part_of_body_ = parts.part_of_body;
   }
   {
     StageTimer timer(clock_, Stage::predict);

@@ -1,10 +1,12 @@
-// The frame of baselines that improve impulse and velocity by iterating: prepares the step, has it iterated, and says
-// not_converged where the residual they leave is above the limit.
+// The frame of baselines that improve impulse and velocity by iterating: prepares the step on all threads, has it
+// iterated, and says not_converged where the residual they leave is above the limit.
 #pragma once
 
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include "solver/parallel_tasks.h"
 #include "solver/prepared_step.h"
 #include "solver/stage_clock.h"
 #include "solver/step_solver.h"
@@ -15,12 +17,19 @@ class IterativeBaseline : public StepSolver {
  public:
   // name: of the registry row; must outlive the object.
   IterativeBaseline(std::string_view name, const SolveOptions& options)
-      : name_(name), stop_(options.stop), clock_(options.threads, options.dispatch) {}
+      : name_(name),
+        stop_(options.stop),
+        clock_(options.threads, options.dispatch),
+        tasks_(clock_, options.threads) {}
   bool uses_partition() const override { return false; }
 
  protected:
   // For iterate() to look at, once an iteration (check_stop).
   const std::atomic<bool>* stop() const { return stop_; }
+  // Of the solver's threads; products of the prepared step go over them already.
+  ParallelTasks& tasks() { return tasks_; }
+  // (n) of the solve, for those that use the partition.
+  std::span<const int> part_of_body() const { return part_of_body_; }
 
  private:
   // Improves solution.impulse (m), the warm start at first, and solution.velocity = v0 + M^-1 J^T impulse. Returns the
@@ -33,7 +42,9 @@ class IterativeBaseline : public StepSolver {
   std::string_view name_;
   const std::atomic<bool>* stop_;
   StageClock clock_;
+  ParallelTasks tasks_;
   PreparedStep step_;
+  std::span<const int> part_of_body_;
   std::vector<double> slack_;
 };
 

@@ -51,9 +51,13 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(SolverRegistryTest, ParametersOfOthersAndBadValuesAreRefusedByName) {
-  EXPECT_NE(refusal("schur@sweeps=5").find("sweeps is a parameter of pgs; schur has: max-iterations"),
+  const std::string of_others = refusal("schur@sweeps=5");
+  EXPECT_NE(of_others.find("sweeps is a parameter of pgs, "), std::string::npos) << of_others;
+  EXPECT_NE(of_others.find("; schur has: max-iterations"), std::string::npos) << of_others;
+  EXPECT_NE(refusal("pgs@lemke-max-rows=5").find("lemke-max-rows is a parameter of lemke; pgs has: sweeps"),
             std::string::npos)
-      << refusal("schur@sweeps=5");
+      << refusal("pgs@lemke-max-rows=5");
+  EXPECT_NE(refusal("apgd@sweep=5").find("'sweeps'?"), std::string::npos) << refusal("apgd@sweep=5");
   EXPECT_NE(refusal("pgs@predictor-sweeps=5").find("strategy pivot"), std::string::npos);
   EXPECT_NE(refusal("pgs@sweeps=-1").find("pgs@sweeps: -1 is not in [0, inf)"), std::string::npos);
   EXPECT_NE(refusal("exact@max-iteration=3").find("'max-iterations'?"), std::string::npos);

@@ -21,11 +21,12 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class SolverContractTest : public testing::TestWithParam<std::string> {
  protected:
-  // With a value for a parameter, where the solver has it.
+  // With a value for a parameter, where the solver has it; with sweeps enough to solve some of the small problems.
   static std::unique_ptr<StepSolver> make(const SolveOptions& options = {}, const std::string& parameter = "",
                                           const std::string& value = "") {
-    const std::string text = has(parameter) ? GetParam() + "@" + parameter + "=" + value : GetParam();
-    return make_step_solver(text, options);
+    const std::string sweeps = has("sweeps") ? "@sweeps=50" : "";
+    const std::string own = has(parameter) ? "@" + parameter + "=" + value : "";
+    return make_step_solver(GetParam() + sweeps + own, options);
   }
 
   static bool has(const std::string& parameter) {
