@@ -22,6 +22,7 @@ std::uint64_t problem_hash(const StepProblem& problem) {
   hash.add(problem.contact_point);
   hash.add(problem.warm_impulse);
   hash.add(problem.box_angle_rad);
+  hash.add(problem.contact_set);
   return hash.value();
 }
 

@@ -94,6 +94,17 @@ Real find_diagonal(const StepProblem& problem, const std::vector<BodyState>& bod
   return diagonal == 0 ? 1 : diagonal;
 }
 
+// w of a row or axis.
+Real find_slack(const StepProblem& problem, const std::vector<BodyState>& bodies, int row,
+                const AxisRow& axis) {
+  Real slack = problem.compliance[row] * axis.impulse - axis.rhs;
+  for (int side = 0; side < 2; ++side) {
+    const int body = problem.row_body[2 * row + side];
+    if (body >= 0) slack += axis.jacobian[side].dot(bodies[body].velocity);
+  }
+  return slack;
+}
+
 // d | lambda - clamp(lambda - w / d, lo, hi) | of one row, as | clamp(w, d (lambda - hi), d (lambda - lo)) |:
 // the same number without the division, whose cancellation would cost eps |lambda| d. d takes longer than all the rest,
 // and most rows do without: one at a bound whose w pushes it there has no residual, and as d >= C, a w between
@@ -101,11 +112,7 @@ Real find_diagonal(const StepProblem& problem, const std::vector<BodyState>& bod
 double find_row_residual(const StepProblem& problem, const std::vector<BodyState>& bodies, int row,
                          const AxisRow& axis) {
   const Real compliance = problem.compliance[row];
-  Real slack = compliance * axis.impulse - axis.rhs;
-  for (int side = 0; side < 2; ++side) {
-    const int body = problem.row_body[2 * row + side];
-    if (body >= 0) slack += axis.jacobian[side].dot(bodies[body].velocity);
-  }
+  const Real slack = find_slack(problem, bodies, row, axis);
   const Real above_lower = axis.impulse - problem.lower[row], above_upper = axis.impulse - problem.upper[row];
   if ((above_lower == 0 && slack >= 0 && above_upper <= 0) ||
       (above_upper == 0 && slack <= 0 && above_lower >= 0))
@@ -115,6 +122,62 @@ double find_row_residual(const StepProblem& problem, const std::vector<BodyState
   if (is_free) return static_cast<double>(std::abs(slack));
   const Real diagonal = find_diagonal(problem, bodies, row, axis);
   return static_cast<double>(std::abs(std::clamp(slack, diagonal * above_upper, diagonal * above_lower)));
+}
+
+// The rows of a contact: normal, then its tangents, one or two of which the second then stays zero.
+using Vector3 = Eigen::Matrix<Real, 3, 1>;
+
+// The nearest point of the polar cone { (n, t): n + mu |t| <= 0 }, which is y - P(y) (Moreau). Outside both cones it
+// lies on the polar's surface, s (-mu, t / |t|).
+Vector3 project_on_polar(const Vector3& y, Real mu) {
+  const Real tangential = std::hypot(y[1], y[2]);
+  if (y[0] + mu * tangential <= 0) return y;
+  if (tangential <= mu * y[0]) return Vector3::Zero();
+  const Real s = (tangential - mu * y[0]) / (1 + mu * mu);
+  return {-mu * s, s * y[1] / tangential, s * y[2] / tangential};
+}
+
+// d (lambda - P(lambda - w / d)) of one contact, as w + y - P(y) with y = d lambda - w: no difference is left of what is
+// large and cancels. Writes one number a row.
+void find_contact_residual(const StepProblem& problem, const std::vector<BodyState>& bodies,
+                           std::span<const double> impulse, int normal, std::span<double> residuals) {
+  Vector3 lambda = Vector3::Zero(), w = Vector3::Zero();
+  Real diagonal = 0;
+  for (std::size_t k = 0; k < residuals.size(); ++k) {
+    const int row = normal + static_cast<int>(k);
+    const AxisRow axis = axis_of_row(problem, impulse, row);
+    lambda[k] = axis.impulse;
+    w[k] = find_slack(problem, bodies, row, axis);
+    diagonal = std::max(diagonal, find_diagonal(problem, bodies, row, axis));
+  }
+  const Real mu = problem.friction_coefficient[normal + 1];
+  if (problem.contact_set[normal] == ContactSet::coulomb) w[0] += mu * std::hypot(w[1], w[2]);
+  const Vector3 apart = w + project_on_polar(diagonal * lambda - w, mu);
+  for (std::size_t k = 0; k < residuals.size(); ++k) residuals[k] = static_cast<double>(std::abs(apart[k]));
+}
+
+// The rows of the set that begins at a row: of a contact without a box all of them, else the row alone.
+int count_rows_of_set(const StepProblem& problem, int row) {
+  int count = 1;
+  if (problem.contact_set.empty() || problem.contact_set[row] == ContactSet::box) return count;
+  while (row + count < problem.row_count() && problem.friction_row[row + count] == row) ++count;
+  return count;
+}
+
+// (m)
+std::vector<double> find_residuals(const StepProblem& problem, const std::vector<BodyState>& bodies,
+                                   std::span<const double> impulse) {
+  std::vector<double> residuals(impulse.size());
+  for (int r = 0; r < problem.row_count();) {
+    const int count = count_rows_of_set(problem, r);
+    if (count == 1) {
+      residuals[r] = find_row_residual(problem, bodies, r, axis_of_row(problem, impulse, r));
+    } else {
+      find_contact_residual(problem, bodies, impulse, r, std::span(residuals).subspan(r, count));
+    }
+    r += count;
+  }
+  return residuals;
 }
 
 // The largest entry of |v0|, |J v0| and |b|.
@@ -136,8 +199,9 @@ double find_velocity_scale(const StepProblem& problem, double largest_free_veloc
 
 void judge_rows(const StepProblem& problem, const std::vector<BodyState>& bodies,
                 std::span<const double> impulse, ResidualReport& report) {
+  const std::vector<double> residuals = find_residuals(problem, bodies, impulse);
   for (int r = 0; r < problem.row_count(); ++r) {
-    const double residual = find_row_residual(problem, bodies, r, axis_of_row(problem, impulse, r));
+    const double residual = residuals[r];
     double& of_kind = problem.row_kind[r] == RowKind::bilateral ? report.residual_bilateral_m_per_s
                       : problem.row_kind[r] == RowKind::normal  ? report.residual_normal_m_per_s
                                                                 : report.residual_friction_m_per_s;
@@ -200,12 +264,8 @@ ResidualReport judge(const StepProblem& problem, std::span<const double> impulse
 
 std::vector<double> row_residuals(const StepProblem& problem, std::span<const double> impulse) {
   assert(std::ssize(impulse) == problem.row_count());
-  std::vector<double> residuals(impulse.size(), kNan);
-  if (!all_finite(impulse)) return residuals;
-  const std::vector<BodyState> bodies = find_body_states(problem, impulse);
-  for (int r = 0; r < problem.row_count(); ++r)
-    residuals[r] = find_row_residual(problem, bodies, r, axis_of_row(problem, impulse, r));
-  return residuals;
+  if (!all_finite(impulse)) return std::vector<double>(impulse.size(), kNan);
+  return find_residuals(problem, find_body_states(problem, impulse), impulse);
 }
 
 }  // namespace cleave

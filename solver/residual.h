@@ -7,7 +7,13 @@
 //     residual = max_r d_r | lambda_r - clamp(lambda_r - w_r / d_r, lo_r, hi_r) |          m/s (rad/s)
 //
 // which is zero exactly at the solution. On the tangent rows of a turned box (StepProblem::box_angle_rad) all
-// of this, J, b and lambda included, is taken along the axes of the box. One limit everywhere: exact means
+// of this, J, b and lambda included, is taken along the axes of the box. Where the set of a contact is no box
+// (StepProblem::contact_set), its rows n, t are measured together, with one d, the largest of theirs:
+//
+//     cone      d | lambda - P(lambda - w / d) |        P: projection on { (n, t): |t| <= mu n },
+//     coulomb   the same with w_n + mu |w_t| in the place of w_n
+//
+// and each row has its own component. One limit everywhere: exact means
 // residual <= kExactLimit * max(1, largest |v0| entry).
 //
 // The limit is meant for metres and seconds. In other units, or where everything creeps, it may be loose: the
@@ -29,7 +35,9 @@ struct ResidualReport {
   double residual_relative =
       0;  // residual / largest entry of |v0|, |J v0| and |b|; 0 where it is zero itself
   double largest_free_velocity_m_per_s = 0;  // largest |entry| of v0
-  // (1/2 v^T M v - 1/2 v0^T M v0) - lambda^T b: an exact step has <= 0 where lo <= 0 <= hi.
+  // (1/2 v^T M v - 1/2 v0^T M v0) - lambda^T b = lambda^T w - lambda^T C lambda - 1/2 |J^T lambda|^2 in M^-1: an exact
+  // step has <= 0 where lambda^T w <= 0. That is so where lo <= 0 <= hi, of a cone, where it is 0 for each contact, and
+  // under Coulomb's law, where it is -mu lambda_n |w_t|.
   double energy_excess_j = 0;
   double kinetic_energy_j = 0;         // 1/2 v^T M v
   double limit_m_per_s = kExactLimit;  // kExactLimit * max(1, largest_free_velocity_m_per_s)

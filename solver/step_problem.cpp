@@ -54,7 +54,8 @@ std::string find_shape_error(const StepProblem& p) {
       wrong(find_size_error("row_constraint", p.row_constraint, 1, m, "rows")) ||
       wrong(find_size_error("contact_point", p.contact_point, 3, m, "rows")) ||
       wrong(find_size_error("warm_impulse", p.warm_impulse, 1, m, "rows")) ||
-      (!p.box_angle_rad.empty() && wrong(find_size_error("box_angle_rad", p.box_angle_rad, 1, m, "rows")))) {
+      (!p.box_angle_rad.empty() && wrong(find_size_error("box_angle_rad", p.box_angle_rad, 1, m, "rows"))) ||
+      (!p.contact_set.empty() && wrong(find_size_error("contact_set", p.contact_set, 1, m, "rows")))) {
     return error;
   }
   return {};
@@ -144,21 +145,20 @@ std::string find_pair_error(const StepProblem& p, std::size_t r) {
   return {};
 }
 
-// Whether rows r + 1 and r + 2 are the friction rows of normal row r, between the same bodies.
-bool has_tangent_pair(const StepProblem& p, std::size_t r) {
-  if (r + 2 >= p.rhs.size()) return false;
-  for (std::size_t k = r + 1; k <= r + 2; ++k) {
-    if (p.row_kind[k] != RowKind::friction || p.friction_row[k] != static_cast<int>(r)) return false;
-    if (!same_bodies(p, k, r)) return false;
-  }
-  return true;
+// How many rows after normal row r are friction rows of it, between the same bodies, without a gap.
+int count_tangents(const StepProblem& p, std::size_t r) {
+  std::size_t next = r + 1;
+  while (next < p.rhs.size() && p.row_kind[next] == RowKind::friction &&
+         p.friction_row[next] == static_cast<int>(r) && same_bodies(p, next, r))
+    ++next;
+  return static_cast<int>(next - r) - 1;
 }
 
 // A turned box has the bounds of its axes in the places of its rows, and a compliance that turning leaves as
 // it is.
 std::string find_turned_box_error(const StepProblem& p, std::size_t r) {
   if (p.box_angle_rad.empty() || p.box_angle_rad[r] == 0) return {};
-  if (!has_tangent_pair(p, r)) {
+  if (count_tangents(p, r) < 2) {
     return error_at("box_angle_rad", r, p.box_angle_rad[r],
                     "0 but on a normal row that its two friction rows, of the same bodies, follow");
   }
@@ -170,10 +170,59 @@ std::string find_turned_box_error(const StepProblem& p, std::size_t r) {
   return {};
 }
 
+bool is_curved(const StepProblem& p, std::size_t r) {
+  return !p.contact_set.empty() && p.contact_set[r] != ContactSet::box;
+}
+
+// Of a friction row: those of a contact without a box stand right behind their normal row, and nowhere else.
+std::string find_stray_error(const StepProblem& p, std::size_t r) {
+  const int normal = p.friction_row[r];
+  if (!is_curved(p, normal) || static_cast<int>(r) <= normal + count_tangents(p, normal)) return {};
+  return error_at(
+      "friction_row", r, normal,
+      "another row, as contact_set there is no box, and the friction rows of such a contact follow it");
+}
+
+// The coefficient of a cone is one number, and its rows have no bounds of their own.
+std::string find_curved_row_error(const StepProblem& p, std::size_t r, std::size_t normal) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double mu = p.friction_coefficient[normal + 1];
+  if (r > normal && !(p.friction_coefficient[r] > 0))
+    return error_at("friction_coefficient", r, p.friction_coefficient[r], "> 0 where contact_set is no box");
+  if (r > normal && p.friction_coefficient[r] != mu)
+    return error_at("friction_coefficient", r, p.friction_coefficient[r],
+                    "that of the row before, " + number_text(mu) + ", where contact_set is no box");
+  const double lower = r > normal ? -kInfinity : 0;
+  if (p.lower[r] != lower)
+    return error_at("lower", r, p.lower[r], number_text(lower) + " where contact_set is no box");
+  if (p.upper[r] != kInfinity) return error_at("upper", r, p.upper[r], "inf where contact_set is no box");
+  return {};
+}
+
+std::string find_contact_set_error(const StepProblem& p, std::size_t r) {
+  if (p.contact_set.empty()) return {};
+  const int set = static_cast<int>(p.contact_set[r]);
+  if (set > static_cast<int>(ContactSet::coulomb))
+    return error_at("contact_set", r, set, "0 (box), 1 (cone), 2 (coulomb)");
+  if (p.row_kind[r] == RowKind::friction)
+    if (std::string error = find_stray_error(p, r); !error.empty()) return error;
+  if (!is_curved(p, r)) return {};
+  const int tangents = p.row_kind[r] == RowKind::normal ? count_tangents(p, r) : 0;
+  if (tangents != 1 && tangents != 2)
+    return error_at(
+        "contact_set", r, set,
+        "0 (box) but on a normal row that its one or two friction rows, of the same bodies, follow");
+  for (std::size_t k = r; k <= r + tangents; ++k)
+    if (std::string error = find_curved_row_error(p, k, r); !error.empty()) return error;
+  if (!p.box_angle_rad.empty() && p.box_angle_rad[r] != 0)
+    return error_at("box_angle_rad", r, p.box_angle_rad[r], "0 where contact_set is no box");
+  return {};
+}
+
 std::string find_row_error(const StepProblem& p) {
   for (std::size_t r = 0; r < p.rhs.size(); ++r) {
-    for (const auto find :
-         {find_body_error, find_bound_error, find_kind_error, find_turned_box_error, find_pair_error}) {
+    for (const auto find : {find_body_error, find_bound_error, find_kind_error, find_turned_box_error,
+                            find_contact_set_error, find_pair_error}) {
       if (std::string error = find(p, r); !error.empty()) return error;
     }
   }

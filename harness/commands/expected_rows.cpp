@@ -8,6 +8,7 @@
 #include "harness/base/combination_label.h"
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
+#include "harness/experiment/friction.h"
 #include "harness/experiment/options.h"
 #include "harness/experiment/step_columns.h"
 #include "harness/files/problem_file.h"
@@ -85,6 +86,8 @@ ExpectedRows::ExpectedRows(const StoredManifest& manifest) {
   is_replay_ = manifest.command == "replay";
   if (!is_replay_) common_ = world_columns(manifest);
   if (is_replay_) common_.cold = flag_of(manifest, "cold");
+  if (const std::string name = manifest.option("friction"); is_replay_ && !name.empty())
+    check_name("friction", name, recorded_friction_models());
   common_.run_id = manifest.run_id;
   common_.threads = integer_of(manifest, "threads");
   common_.repeat_count = integer_of(manifest, "repeats");

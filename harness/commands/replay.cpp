@@ -13,7 +13,9 @@
 #include "harness/commands/manifested_work.h"
 #include "harness/commands/run_command_line.h"
 #include "harness/commands/stored_partition.h"
+#include "harness/commands/turned_problem.h"
 #include "harness/experiment/combination.h"
+#include "harness/experiment/friction.h"
 #include "harness/experiment/options.h"
 #include "harness/experiment/step_columns.h"
 #include "harness/files/csv_recorder.h"
@@ -30,6 +32,7 @@ using Given = std::map<std::string, std::string>;
 struct ReplayOptions {
   RunOptions solve;
   std::vector<std::string> files;
+  std::string friction;  // empty: as recorded
   bool cold = false;
   bool write_solutions = false;
 };
@@ -45,6 +48,9 @@ std::vector<OptionValue> values_of(const ReplayOptions& options) {
   std::vector<OptionValue> values;
   for (const OptionValue& value : option_values(options.solve))
     if (in_replay(value.name)) values.push_back(value);
+  // A replay without it is the one it was before there was such an option.
+  if (!options.friction.empty())
+    values.push_back({"friction", OptionKind::text, options.friction, About::problem});
   const auto flag = [](bool set) { return std::string(set ? "true" : "false"); };
   values.push_back({"cold", OptionKind::flag, flag(options.cold), About::problem});
   values.push_back({"write-solutions", OptionKind::flag, flag(options.write_solutions)});
@@ -65,7 +71,8 @@ void check_files(ReplayOptions& options) {
   std::string before;
   std::tuple<std::string, std::uint64_t, int, int> last;
   for (const std::string& path : options.files) {
-    const ProblemFile file = read_problem_file_aloud(path);
+    ProblemFile file = read_problem_file_aloud(path);
+    turn_friction(path, options.friction, file);
     const std::tuple now{file.scene, file.seed, file.problem.body_count(), file.step};
     if (const std::string option = asks_for_series(options.solve);
         !option.empty() && !before.empty() && now != last)
@@ -182,6 +189,7 @@ class Replay {
  private:
   void solve(const std::string& path, const fs::path& out, CsvRecorder& recorder) {
     ProblemFile file = read_problem_file(path);
+    turn_friction(path, options_.friction, file);
     std::vector<StepRecord> rows(combinations_.size(), columns_of(file, path, options_));
     std::vector<double> recorded = file.problem.warm_impulse;
     if (options_.cold) std::ranges::fill(file.problem.warm_impulse, 0.0);
@@ -222,7 +230,7 @@ int replay(ReplayOptions options, const std::vector<std::string>& argv) {
 // What is given beside --config wins; FILES do as a whole.
 ReplayOptions with_stored(const Given& given, ReplayOptions options) {
   RepeatedOptions all =
-      with_config(given, "replay", &CommandSet::replay, {"cold", "write-solutions", "files"});
+      with_config(given, "replay", &CommandSet::replay, {"friction", "cold", "write-solutions", "files"});
   const auto take = [&](const char* name) {
     const auto node = all.given.extract(name);
     return node.empty() ? std::string() : node.mapped();
@@ -230,6 +238,8 @@ ReplayOptions with_stored(const Given& given, ReplayOptions options) {
   std::istringstream files(take("files"));
   if (options.files.empty())
     for (std::string file; std::getline(files, file);) options.files.push_back(file);
+  if (const std::string stored = take("friction"); options.friction.empty()) options.friction = stored;
+  if (!options.friction.empty()) check_name("--friction", options.friction, recorded_friction_models());
   options.cold |= take("cold") == "true";
   options.write_solutions |= take("write-solutions") == "true";
   options.solve = parse_solve_options(all.given, all.stored);
@@ -246,6 +256,10 @@ std::function<int()> declare_replay(CLI::App& app, const std::vector<std::string
   const auto state = std::make_shared<State>();
   app.add_option("files", state->options.files, "problem files that cleave record wrote")->type_name("FILES");
   declare_run_options(app, state->given, &CommandSet::replay);
+  app.add_option("--friction", state->options.friction,
+                 "friction model of the contacts in place of the recorded one: " +
+                     joined(recorded_friction_models(), ", "))
+      ->type_name("NAME");
   app.add_flag("--cold", state->options.cold, "start from zero impulses in place of the recorded ones");
   app.add_flag("--write-solutions", state->options.write_solutions,
                "copy each file to --out with every solution and partition in it");

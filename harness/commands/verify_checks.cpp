@@ -13,6 +13,7 @@
 #include "harness/base/printable_text.h"
 #include "harness/commands/stored_partition.h"
 #include "harness/experiment/algorithms.h"
+#include "harness/experiment/friction.h"
 #include "harness/experiment/problem_graph.h"
 #include "harness/experiment/splitter.h"
 #include "harness/experiment/step_columns.h"
@@ -139,10 +140,25 @@ void check_partition(const std::string& label, const ProblemFile& file, const St
   if (check_part_ids(partition, subject, list)) check_split(file, partition, subject, list);
 }
 
-void check_friction_model(const std::string& model, const std::string& subject, CheckList& list) {
+// A contact with friction whose set is not that of the model, in words; empty: there is none.
+std::string find_other_set(const StepProblem& problem, const FrictionModelEntry& model) {
+  for (int r = 0; r < problem.row_count(); ++r) {
+    if (!(problem.friction_coefficient[r] > 0)) continue;
+    const int normal = problem.friction_row[r];
+    const ContactSet set = problem.contact_set.empty() ? ContactSet::box : problem.contact_set[normal];
+    if (set != model.contact_set)
+      return "; contact_set[" + std::to_string(normal) + "] = " + std::to_string(static_cast<int>(set)) +
+             ", allowed: " + std::to_string(static_cast<int>(model.contact_set));
+  }
+  return {};
+}
+
+void check_friction_model(const ProblemFile& file, const std::string& subject, CheckList& list) {
+  const std::string& model = file.friction_model;
   std::string error;
   try {
-    read_named("friction", model, {{"friction-force-n", "0"}});
+    const Algorithm named = read_named("friction", model, {{"friction-force-n", "0"}});
+    error = find_other_set(file.problem, friction_model(named.name));
   } catch (const std::invalid_argument& wrong) {
     error = std::string("; ") + wrong.what();
   }
@@ -188,8 +204,7 @@ void check_problem_file(const std::filesystem::path& path, const ProblemFile& fi
                                      std::to_string(problem.body_count()) + " bodies, " +
                                      std::to_string(problem.row_count()) + " rows, hash " +
                                      hex(problem_hash(problem)));
-  if (file.friction_model != kUnknownProvenance)
-    check_friction_model(file.friction_model, path.string(), list);
+  if (file.friction_model != kUnknownProvenance) check_friction_model(file, path.string(), list);
   for (const auto& [label, solution] : file.solutions) {
     const std::string subject = path.string() + " solution/" + label;
     check_solution_label(label, solution, subject, list);

@@ -10,9 +10,11 @@
 #include "harness/base/hash.h"
 #include "harness/base/numbers.h"
 #include "harness/commands/stored_partition.h"
+#include "harness/commands/turned_problem.h"
 #include "harness/commands/verify_row_sums.h"
 #include "harness/experiment/cell_measures.h"
 #include "harness/experiment/friction.h"
+#include "harness/experiment/friction_mismatch.h"
 #include "harness/experiment/problem_graph.h"
 #include "harness/experiment/splitter.h"
 #include "harness/experiment/step_columns.h"
@@ -47,6 +49,12 @@ fs::path problem_path(const fs::path& directory, const std::string& name) {
   const fs::path beside = directory / fs::path(name).filename();
   if (fs::exists(beside, error)) return beside;
   return fs::exists(name, error) ? fs::path(name) : fs::path();
+}
+
+// The model that a replay gave to its problems; empty: as recorded. A name that is none is told among the options.
+std::string replayed_friction(const StoredManifest& manifest) {
+  const std::string name = manifest.command == "replay" ? manifest.option("friction") : "";
+  return std::ranges::count(recorded_friction_models(), name) > 0 ? name : "";
 }
 
 // One row against the row computed anew.
@@ -172,7 +180,9 @@ void check_solved_row(const ProblemFile& file, const std::string& label, const s
   const StoredSolution& solution = file.solutions.at(label);
   const ResidualReport verdict = judge(file.problem, solution.impulse);
   check.same_residuals(verdict);
-  check.same_number("bound_mismatch", bound_mismatch(file.problem, solution.impulse));
+  const FrictionMismatch mismatch = friction_mismatch(file.problem, solution.impulse);
+  check.same_number("bound_mismatch", mismatch.bound_mismatch);
+  check.same_number("friction_beyond_share", mismatch.friction_beyond_share);
   check.same_text("strategy", solution.strategy);
   check.same_text("kernel", solution.kernel);
   const auto partition = file.partitions.find(label);
@@ -217,8 +227,10 @@ void check_row(const StepsTable& table, std::size_t row, const ProblemFile& file
 
 }  // namespace
 
-void check_file_rows(const fs::path& directory, const StepsTable& table, bool needs_solutions,
+void check_file_rows(const fs::path& directory, const StepsTable& table, const StoredManifest& manifest,
                      CheckList& list) {
+  const bool needs_solutions = manifest.option("write-solutions") == "true";
+  const std::string friction = replayed_friction(manifest);
   fs::path open;
   ProblemFile file;
   std::size_t without = 0;
@@ -232,7 +244,10 @@ void check_file_rows(const fs::path& directory, const StepsTable& table, bool ne
     const fs::path problem = problem_path(directory, name);
     list.add(!problem.empty(), subject, "problem file " + name + (problem.empty() ? " is not there" : ""));
     if (problem.empty()) continue;
-    if (problem != open) file = read_problem_file(problem);
+    if (problem != open) {
+      file = read_problem_file(problem);
+      turn_friction(problem, friction, file);
+    }
     open = problem;
     check_row(table, row, file, problem, needs_solutions, subject, list);
   }

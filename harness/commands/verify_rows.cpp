@@ -191,7 +191,7 @@ void check_steps_table(const fs::path& directory, const StoredManifest& manifest
     check_rows_of_problems(*table, *expected, subject, list);
     if (manifest.state == "complete") check_totals(*table, *expected, manifest, subject, list);
   }
-  check_file_rows(directory, *table, manifest.option("write-solutions") == "true", list);
+  check_file_rows(directory, *table, manifest, list);
 }
 
 }  // namespace cleave

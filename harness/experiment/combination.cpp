@@ -8,6 +8,7 @@
 
 #include "harness/base/hash.h"
 #include "harness/experiment/cell_measures.h"
+#include "harness/experiment/friction_mismatch.h"
 #include "solver/dispatch_cost.h"
 #include "solver/problem_hash.h"
 
@@ -83,7 +84,7 @@ void set_verdict(const StepProblem& problem, const Outcome& outcome, StepRecord&
     row.status_reason = outcome.summary.message;
   if (!outcome.solved()) return;
   row.set_verdict(outcome.verdict);
-  row.bound_mismatch = bound_mismatch(problem, outcome.solution.impulse);
+  row.set_friction(friction_mismatch(problem, outcome.solution.impulse));
 }
 
 void set_measures(const StepProblem& problem, const BodyGraph* graph, const Outcome& outcome,

@@ -13,7 +13,7 @@
 
 #include "harness/base/combination_label.h"
 #include "harness/experiment/core_meter.h"
-#include "harness/experiment/friction.h"
+#include "harness/experiment/friction_converged.h"
 #include "harness/experiment/options.h"
 #include "harness/experiment/partition_keeper.h"
 #include "harness/experiment/splitter.h"

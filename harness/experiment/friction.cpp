@@ -1,13 +1,10 @@
 #include "harness/experiment/friction.h"
 
-#include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <vector>
 
-#include "solver/gauss_seidel.h"
+#include "harness/experiment/friction_box.h"
+#include "harness/experiment/friction_cone.h"
 
 namespace cleave {
 namespace {
@@ -30,45 +27,6 @@ const Parameter& friction_force_n() {
   return parameter;
 }
 
-bool follows_normal(const StepProblem& problem, int row) { return problem.friction_coefficient[row] > 0; }
-
-double coulomb_bound(const StepProblem& problem, int row, std::span<const double> impulse) {
-  return problem.friction_coefficient[row] * std::max(0.0, impulse[problem.friction_row[row]]);
-}
-
-void set_bound(StepProblem& problem, int row, double bound) {
-  problem.upper[row] = bound;
-  problem.lower[row] = -bound;
-}
-
-double clamp_impulse(const StepProblem& problem, int row, double impulse, std::span<const double> others) {
-  if (!follows_normal(problem, row)) return std::clamp(impulse, problem.lower[row], problem.upper[row]);
-  const double bound = coulomb_bound(problem, row, others);
-  return std::clamp(impulse, -bound, bound);
-}
-
-// The impulses after a few Gauss-Seidel sweeps in which friction bounds move with the normal impulses.
-std::vector<double> predicted_impulse(const StepProblem& problem) {
-  PreparedStep step;
-  step.prepare(problem);
-  std::vector<double> impulse(problem.row_count(), 0.0), velocity(problem.free_velocity);
-  const auto start_warm = [&](int r, double, double) {
-    return clamp_impulse(problem, r, problem.warm_impulse[r], impulse);
-  };
-  const auto relax = [&](int r, double old, double w) {
-    return clamp_impulse(problem, r, old - w / step.diagonal()[r], impulse);
-  };
-  gauss_seidel_sweep(step, OrderedSlack{}, start_warm, impulse, velocity);
-  for (int s = 0; s < kPredictionSweeps; ++s)
-    gauss_seidel_sweep(step, OrderedSlack{}, relax, impulse, velocity);
-  return impulse;
-}
-
-void set_coulomb_bounds(std::span<const double> impulse, StepProblem& problem) {
-  for (int r = 0; r < problem.row_count(); ++r)
-    if (follows_normal(problem, r)) set_bound(problem, r, coulomb_bound(problem, r, impulse));
-}
-
 }  // namespace
 
 std::span<const FrictionModelEntry> friction_models() {
@@ -83,54 +41,55 @@ std::span<const FrictionModelEntry> friction_models() {
         "bound = mu * normal impulse predicted by 5 Gauss-Seidel sweeps, then frozen",
         "pyramid of the ODE manual (dContactApprox1) with its bounds frozen",
         {mu()}},
-       FrictionModel::box},
+       FrictionModel::box,
+       ContactSet::box,
+       predict_friction_bounds,
+       true},
       {{"box-converged",
         "bound iterated to mu * normal impulse of the solution",
         "fixed point as in Kaufman et al., Staggered Projections, ACM TOG 27(5), 2008",
         {mu()}},
-       FrictionModel::box_converged},
+       FrictionModel::box_converged,
+       ContactSet::box,
+       predict_friction_bounds},
+      {{"cone",
+        "|friction| <= mu * normal impulse, as a convex problem: what slides lifts off at mu times its speed",
+        "Anitescu, Optimization-based simulation of nonsmooth rigid multibody dynamics, Math. Program. 105, "
+        "2006",
+        {mu()}},
+       FrictionModel::cone,
+       ContactSet::cone,
+       set_cones,
+       true},
+      {{"coulomb",
+        "|friction| <= mu * normal impulse, against the sliding direction: Coulomb's law, not convex",
+        "de Saxce and Feng, Mathematical and Computer Modelling 28, 1998",
+        {mu()}},
+       FrictionModel::coulomb,
+       ContactSet::coulomb,
+       set_coulomb,
+       true},
   };
   return table;
 }
 
-FrictionModel friction_model(const std::string& name) {
+const FrictionModelEntry& friction_model(const std::string& name) {
   for (const FrictionModelEntry& entry : friction_models())
-    if (entry.name == name) return entry.model;
+    if (entry.name == name) return entry;
   throw std::logic_error("no friction model of this name: " + name);
 }
 
-void predict_friction_bounds(StepProblem& problem) {
-  set_coulomb_bounds(predicted_impulse(problem), problem);
+const FrictionModelEntry& friction_model(FrictionModel model) {
+  for (const FrictionModelEntry& entry : friction_models())
+    if (entry.model == model) return entry;
+  throw std::logic_error("a friction model that is in no table");
 }
 
-double bound_mismatch(const StepProblem& problem, std::span<const double> impulse) {
-  assert(static_cast<int>(impulse.size()) == problem.row_count());
-  double largest_bound = 0;
-  for (int r = 0; r < problem.row_count(); ++r)
-    if (follows_normal(problem, r))
-      largest_bound = std::max(largest_bound, coulomb_bound(problem, r, impulse));
-  const double floor = std::max(kBoundFloor * largest_bound, 1e-12);
-  double mismatch = 0;
-  for (int r = 0; r < problem.row_count(); ++r) {
-    if (!follows_normal(problem, r)) continue;
-    const double bound = coulomb_bound(problem, r, impulse);
-    mismatch = std::max(mismatch, std::abs(problem.upper[r] - bound) / std::max(bound, floor));
-  }
-  return mismatch;
-}
-
-ConvergedBounds converge_friction_bounds(StepProblem& problem, StepSolver& solver, const Parts& parts,
-                                         Solution& solution) {
-  ConvergedBounds result;
-  while (true) {
-    result.last_summary = solver.solve(problem, parts, solution);
-    ++result.solves;
-    result.mismatch = bound_mismatch(problem, solution.impulse);
-    if (result.last_summary.status != SolveStatus::ok) return result;
-    result.converged = result.mismatch <= kBoundTolerance;
-    if (result.converged || result.solves == kBoundIterationCap) return result;
-    set_coulomb_bounds(solution.impulse, problem);
-  }
+std::vector<std::string> recorded_friction_models() {
+  std::vector<std::string> names;
+  for (const FrictionModelEntry& entry : friction_models())
+    if (entry.of_recorded) names.push_back(entry.name);
+  return names;
 }
 
 }  // namespace cleave

@@ -112,7 +112,7 @@ void read_stiffness(const Given& given, RunOptions& options) {
 // The friction model and its parameters as extraction takes them.
 void read_friction(RunOptions& options) {
   const Settings& settings = options.friction.settings;
-  options.extract.friction = friction_model(options.friction.name);
+  options.extract.friction = friction_model(options.friction.name).model;
   if (settings.has("mu")) options.extract.mu = settings.number("mu");
   if (settings.has("friction-force-n"))
     options.extract.friction_force_n = settings.number("friction-force-n");

@@ -88,7 +88,8 @@ RepeatedOptions repeated_options(const Given& stored, const Given& given, bool C
   own_and_scene.insert(own_and_scene.end(), of_scene.begin(), of_scene.end());
   Given taken;
   for (const auto& [name, value] : stored)
-    if (is_taken(name, value, command, own_and_scene)) taken.emplace(name, value);
+    if (std::ranges::count(own, name) > 0 || is_taken(name, value, command, own_and_scene))
+      taken.emplace(name, value);
   if (is_another_scene(given, taken))
     for (const std::string& name : of_scene)
       if (find_common_parameter(name) == nullptr) taken.erase(name);

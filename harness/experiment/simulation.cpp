@@ -67,7 +67,7 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
                 known_positions(world),
                 world.body_groups()};
     watch.lap_ms();
-    predict_bounds(problem, advancing, step);
+    set_friction(problem, advancing, step);
     common.t_predict_ms = watch.lap_ms();
     common.ode_messages = world.take_message_count();
 
@@ -153,11 +153,10 @@ int Simulation::total_steps() const {
 }
 
 // What friction rows may carry is fixed before anyone solves, so that all combinations have the same problem.
-void Simulation::predict_bounds(StepProblem& problem, Combination& advancing, int step) {
-  const FrictionModel model = options_.extract.friction;
-  if (model != FrictionModel::box && model != FrictionModel::box_converged) return;
-  predict_friction_bounds(problem);
-  if (model == FrictionModel::box) return;
+void Simulation::set_friction(StepProblem& problem, Combination& advancing, int step) {
+  const FrictionModelEntry& model = friction_model(options_.extract.friction);
+  if (model.set != nullptr) model.set(problem);
+  if (model.model != FrictionModel::box_converged) return;
   if (!advancing.converge_bounds(problem, step).converged) ++summary_.unconverged_bounds;
 }
 

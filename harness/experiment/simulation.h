@@ -57,7 +57,7 @@ class Simulation {
   void run_worlds(const RowSink& write, const Progress& progress);
   void run_world(std::span<Combination> combinations, Combination& advancing, const RowSink& write,
                  const Progress& progress);
-  void predict_bounds(StepProblem& problem, Combination& advancing, int step);
+  void set_friction(StepProblem& problem, Combination& advancing, int step);
   Measured measure(std::span<Combination> combinations, const StepProblem& problem, const StepRecord& common);
   void finish_rows(Measured& measured, const OdeWorld& world, const Outcome& advance);
   void record(std::span<const StepRecord> rows, const RowSink& write);

@@ -129,6 +129,11 @@ void StepRecord::set_verdict(const ResidualReport& report) {
   residual_relative = report.residual_relative;
 }
 
+void StepRecord::set_friction(const FrictionMismatch& mismatch) {
+  bound_mismatch = mismatch.bound_mismatch;
+  friction_beyond_share = mismatch.friction_beyond_share;
+}
+
 std::vector<Column> columns() {
   std::vector<Column> list;
   const StepRecord record;

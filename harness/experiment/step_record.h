@@ -24,6 +24,7 @@
 #include "harness/base/column.h"
 #include "harness/base/parameter.h"
 #include "harness/experiment/cell_measures.h"
+#include "harness/experiment/friction_mismatch.h"
 #include "partition/partition.h"
 #include "solver/residual.h"
 #include "solver/step_solver.h"
@@ -32,7 +33,7 @@ namespace cleave {
 
 // In the column schema_version of every row. Counts up when a column changes its meaning; new ones come at
 // the end.
-inline constexpr const char* kStepsSchema = "cleave-steps-4";
+inline constexpr const char* kStepsSchema = "cleave-steps-5";
 
 // A column of a parameter of algorithms (algorithms.h). Those of the first tables stand first; some came when
 // there were others behind them, and stand last.
@@ -114,6 +115,7 @@ struct StepRecord {
   std::string schema_version = kStepsSchema;
   double factor_predicted_mb = kUnmeasured;
   std::string auto_choice = "-";
+  double friction_beyond_share = kUnmeasured;
 
   std::string parameter(const std::string& column) const {
     const auto found = parameters.find(column);
@@ -129,6 +131,7 @@ struct StepRecord {
   void set_partition(const PartitionMetrics& metrics);
   void set_summary(const SolveSummary& summary);
   void set_verdict(const ResidualReport& report);
+  void set_friction(const FrictionMismatch& mismatch);
 
  private:
   template <std::size_t N>
@@ -188,8 +191,9 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit("rows_normal", r.rows_normal, "contact normal rows");
   visit("rows_friction", r.rows_friction, "friction rows");
   visit("bound_mismatch", r.bound_mismatch,
-        "largest relative difference between a friction bound and mu times the normal impulse it was "
-        "predicted from");
+        "sum over friction rows of |bound - mu n| over the sum of mu n, n the normal impulse; nan where no "
+        "bound "
+        "stands for mu n");
   visit("islands", r.islands, "connected components of the body graph");
   visit("parts_before", r.parts_before, "parts before refinement");
   visit("parts", r.parts, "parts after refinement, as for all columns with a _before beside them");
@@ -301,6 +305,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         "fresh, repaired or kept: where the parts of the step come from");
   visit("auto_choice", r.auto_choice,
         "partitioner+refiner/kernel that the partitioner auto chose, the kernel being that of the model");
+  visit("friction_beyond_share", r.friction_beyond_share,
+        "share of the same friction rows whose |impulse| is above mu n (1 + 1e-9)");
 }
 
 // "run_id,scene,...\n"

@@ -45,6 +45,7 @@ constexpr const Hdf5Element& hdf5_element(std::uint16_t) { return kHdf5Short; }
 constexpr const Hdf5Element& hdf5_element(int) { return kHdf5Int; }
 constexpr const Hdf5Element& hdf5_element(std::uint8_t) { return kHdf5Byte; }
 constexpr const Hdf5Element& hdf5_element(RowKind) { return kHdf5Byte; }
+constexpr const Hdf5Element& hdf5_element(ContactSet) { return kHdf5Byte; }
 
 // Keeps the library from printing, errors are ours to tell, and from an exit handler, which would write once more what
 // could not be written and end in a crash. Call it before any other function of the library, even its version.

@@ -1,4 +1,4 @@
-// A recorded step problem in one HDF5 file (schema "cleave-problem-1"): all that a solver needs to solve the
+// A recorded step problem in one HDF5 file (schemas "cleave-problem-1" and "-2"): all that a solver needs to solve the
 // step again elsewhere, where the bodies were, and solutions that were found. n bodies, m constraint rows.
 //
 // PROBLEM_FILES.md says what is in it, what may be left out and which types are read; a program of 30 lines

@@ -11,7 +11,13 @@ namespace cleave {
 // optional: provenance, or told by the other arrays (problem_file_defaults.h).
 enum class Presence { required, optional };
 
+// The second has contact_set, the first has not: a file is of the first that holds it.
 inline const std::string kProblemSchema = "cleave-problem-1";
+inline const std::string kProblemSchemaWithSets = "cleave-problem-2";
+
+inline const std::string& problem_schema(const StepProblem& problem) {
+  return problem.contact_set.empty() ? kProblemSchema : kProblemSchemaWithSets;
+}
 
 // File: ProblemFile or const ProblemFile, and so on below.
 template <class File, class Visitor>

@@ -107,6 +107,7 @@ void walk_plain(Packed& packed, Stream& stream) {
   visit_attributes(packed.file, [&](const char*, auto& value, Presence) { stream(value); });
   visit_arrays(packed.file, 0, 0,
                [&](const char*, auto& values, const Hdf5Shape&, Presence) { stream(values); });
+  stream(packed.file.problem.contact_set);
 }
 
 void unpack_partition(Unpacker& from, StoredPartition& partition) {
@@ -124,6 +125,7 @@ void expect_sizes(const ProblemFile& file) {
     if (values.size() != count) Unpacker::fail();
   };
   visit_arrays(file, n, m, expect);
+  if (!file.problem.contact_set.empty()) expect("", file.problem.contact_set, {m});
   if (file.body_group) expect("", *file.body_group, {n});
   if (file.shapes)
     visit_shape_arrays(*file.shapes, file.shapes->geom_body.size(), file.shapes->convex_points.size() / 3,

@@ -58,8 +58,12 @@ auto present_arrays_of(const Hdf5Reader& reader) {
 void read_schema(const Hdf5Reader& reader) {
   std::string schema;
   reader.attribute("schema", schema);
-  if (schema != kProblemSchema)
-    reader.fail("schema = \"" + printable(schema) + "\", allowed: \"" + kProblemSchema + '"');
+  if (schema != kProblemSchema && schema != kProblemSchemaWithSets)
+    reader.fail("schema = \"" + printable(schema) + "\", allowed: \"" + kProblemSchema + "\", \"" +
+                kProblemSchemaWithSets + '"');
+  if (reader.has("contact_set") != (schema == kProblemSchemaWithSets))
+    reader.fail("schema = \"" + schema + "\", allowed: \"" + kProblemSchemaWithSets +
+                "\" where there is a contact_set, \"" + kProblemSchema + "\" where there is none");
 }
 
 void read_hashes(const Hdf5Reader& reader, StoredHashes& hashes) {
@@ -78,7 +82,7 @@ void check_friction(const Hdf5Reader& reader, const StepProblem& problem) {
 
 // A file of ours holds nothing that is not read: the name of an array with a default may have been damaged.
 void check_names(const Hdf5Reader& reader, const StoredHashes& hashes) {
-  std::set<std::string> known = {"body_group", "shape", "solution", "partition"};
+  std::set<std::string> known = {"contact_set", "body_group", "shape", "solution", "partition"};
   ProblemFile any;
   visit_arrays(any, 0, 0, [&known](const char* name, auto&&...) { known.insert(name); });
   for (const std::string& name : reader.names())
@@ -90,6 +94,7 @@ void read_problem(const Hdf5Reader& reader, std::size_t n, std::size_t m, Proble
   visit_arrays(file, n, m, present_arrays_of(reader));
   fill_left_out(file);
   check_friction(reader, file.problem);
+  if (reader.has("contact_set")) reader.array("contact_set", {m}, file.problem.contact_set);
   if (reader.has("body_group")) reader.array("body_group", {n}, file.body_group.emplace());
 }
 

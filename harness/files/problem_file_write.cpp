@@ -53,12 +53,13 @@ void write_contents(const Hdf5Writer& writer, const ProblemFile& file) {
   // First of all: an object header that is cut short still says that there were hashes.
   const StoredHashes hashes = hashes_of(file);
   visit_hashes(hashes, [&](const char* name, const std::string& value) { writer.attribute(name, value); });
-  writer.attribute("schema", kProblemSchema);
+  writer.attribute("schema", problem_schema(file.problem));
   visit_attributes(file,
                    [&](const char* name, const auto& value, Presence) { writer.attribute(name, value); });
   visit_arrays(file, n, m, [&](const char* name, const auto& values, const Hdf5Shape& shape, Presence) {
     writer.array(name, shape, values);
   });
+  if (!file.problem.contact_set.empty()) writer.array("contact_set", {m}, file.problem.contact_set);
   if (file.body_group) writer.array("body_group", {n}, *file.body_group);
   if (file.shapes) {
     const Hdf5Writer group = writer.group("shape");

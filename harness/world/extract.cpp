@@ -40,6 +40,8 @@ bool has_friction_rows(const ExtractOptions& options) {
       return options.friction_force_n > 0;
     case FrictionModel::box:
     case FrictionModel::box_converged:
+    case FrictionModel::cone:
+    case FrictionModel::coulomb:
       return options.mu > 0;
   }
   return false;

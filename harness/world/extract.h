@@ -26,7 +26,8 @@ namespace cleave {
 //   box            bound = mu * predicted normal impulse (matched contact of the previous step, then 5
 //                  Gauss-Seidel sweeps with moving bounds), then frozen: a true MLCP, the same for every solver
 //   box-converged  outer fixed point on the bounds to 1e-6 relative or a stated cap; the mismatch is reported
-enum class FrictionModel { none, constant, box, box_converged };
+//   cone, coulomb  no bounds: the contacts' sets (StepProblem::contact_set)
+enum class FrictionModel { none, constant, box, box_converged, cone, coulomb };
 
 struct ExtractOptions {
   double h_s = 1.0 / 60;  // > 0
@@ -37,8 +38,8 @@ struct ExtractOptions {
   double friction_force_n = 0;  // >= 0, of `constant`
 };
 
-// Builds the rows. Friction bounds of `box` and `box-converged` are left at +-mu * warm normal impulse;
-// friction.h sets them. warm_impulse comes from memory (zero where nothing matched). Throws
+// Builds the rows. Friction bounds of all models with a coefficient are left at +-mu * warm normal impulse;
+// friction.h sets what they may carry. warm_impulse comes from memory (zero where nothing matched). Throws
 // std::invalid_argument naming an option outside its range, and std::runtime_error naming a joint type
 // or body setting of the world that is not extracted; none is ever dropped.
 StepProblem extract(const OdeWorld& world, std::span<const ContactPoint> contacts,

@@ -30,11 +30,20 @@ std::string image_written_by(Write write) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// As cleave writes them, and as others do, which vouch for nothing.
-const std::array<std::string, 2>& sound_images() {
-  static const std::array<std::string, 2> images = {
+ProblemFile file_with_sets() {
+  ProblemFile file = sample_file(kBodies);
+  give_sample_sets(file.problem);
+  return file;
+}
+
+// As cleave writes them, and as others do, which vouch for nothing; then both with contacts that have no box. A recipe
+// names an image by its place here, so that new ones come at the end.
+const std::array<std::string, 4>& sound_images() {
+  static const std::array<std::string, 4> images = {
       image_written_by([](const fs::path& path) { write_problem_file(path, sample_file(kBodies)); }),
-      image_written_by([](const fs::path& path) { write_unchecked(path, sample_file(kBodies)); })};
+      image_written_by([](const fs::path& path) { write_unchecked(path, sample_file(kBodies)); }),
+      image_written_by([](const fs::path& path) { write_problem_file(path, file_with_sets()); }),
+      image_written_by([](const fs::path& path) { write_unchecked(path, file_with_sets()); })};
   return images;
 }
 

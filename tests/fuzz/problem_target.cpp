@@ -5,7 +5,8 @@
 #include <iterator>
 #include <optional>
 
-#include "harness/experiment/friction.h"
+#include "harness/experiment/friction_cone.h"
+#include "harness/experiment/friction_mismatch.h"
 #include "harness/experiment/problem_graph.h"
 #include "harness/files/problem_file.h"
 #include "solver/problem_hash.h"
@@ -38,8 +39,11 @@ void use_problem(StepProblem problem, const std::vector<double>& impulse) {
   problem_hash(problem);
   body_graph_of(problem);
   judge(problem, impulse);
-  bound_mismatch(problem, impulse);
-  predict_friction_bounds(problem);
+  friction_mismatch(problem, impulse);
+  for (const ContactSet set : {ContactSet::coulomb, ContactSet::box, ContactSet::cone}) {
+    if (!turn_contacts(set, problem).empty()) return;
+    judge(problem, impulse);
+  }
 }
 
 void use_solutions(const ProblemFile& file) {

@@ -48,7 +48,8 @@ TEST(Extract, ProblemsAreConsistent) {
     const auto world = make_heap(seed);
     const std::vector<ContactPoint> contacts = world->collide(8, nullptr);
     for (const FrictionModel model :
-         {FrictionModel::none, FrictionModel::constant, FrictionModel::box, FrictionModel::box_converged}) {
+         {FrictionModel::none, FrictionModel::constant, FrictionModel::box, FrictionModel::box_converged,
+          FrictionModel::cone, FrictionModel::coulomb}) {
       ExtractOptions options;
       options.friction = model;
       options.friction_force_n = 100;

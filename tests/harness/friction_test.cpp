@@ -9,6 +9,9 @@
 #include <set>
 #include <string>
 
+#include "harness/experiment/friction_box.h"
+#include "harness/experiment/friction_converged.h"
+#include "harness/experiment/friction_mismatch.h"
 #include "tests/harness/dense_oracle.h"
 #include "tests/harness/extract_test_scene.h"
 
@@ -119,7 +122,10 @@ TEST(FrictionPrediction, ConstantBoundsAreLeftAlone) {
   const std::vector<double> upper = problem.upper;
   predict_friction_bounds(problem);
   EXPECT_EQ(problem.upper, upper);
-  EXPECT_EQ(bound_mismatch(problem, std::vector<double>(problem.row_count(), 3.0)), 0);
+  const std::vector<double> impulse(problem.row_count(), 3.0);
+  EXPECT_EQ(largest_bound_error(problem, impulse), 0);
+  EXPECT_TRUE(std::isnan(friction_mismatch(problem, impulse).bound_mismatch));
+  EXPECT_TRUE(std::isnan(friction_mismatch(problem, impulse).friction_beyond_share));
 }
 
 TEST(FrictionPrediction, WarmStartedBoundsComeCloserThanColdOnes) {
@@ -135,7 +141,10 @@ TEST(FrictionPrediction, WarmStartedBoundsComeCloserThanColdOnes) {
     warm.warm_impulse = solution.impulse;
     predict_friction_bounds(cold);
     predict_friction_bounds(warm);
-    EXPECT_LT(bound_mismatch(warm, solution.impulse), bound_mismatch(cold, solution.impulse))
+    EXPECT_LT(largest_bound_error(warm, solution.impulse), largest_bound_error(cold, solution.impulse))
+        << "seed " << seed;
+    EXPECT_LT(friction_mismatch(warm, solution.impulse).bound_mismatch,
+              friction_mismatch(cold, solution.impulse).bound_mismatch)
         << "seed " << seed;
   }
 }
@@ -143,7 +152,8 @@ TEST(FrictionPrediction, WarmStartedBoundsComeCloserThanColdOnes) {
 TEST(FrictionPrediction, EmptyProblemsAreFine) {
   StepProblem problem;
   predict_friction_bounds(problem);
-  EXPECT_EQ(bound_mismatch(problem, {}), 0);
+  EXPECT_EQ(largest_bound_error(problem, {}), 0);
+  EXPECT_TRUE(std::isnan(friction_mismatch(problem, {}).bound_mismatch));
 }
 
 // --- mismatch -------------------------------------------------------------------------------------------
@@ -165,17 +175,54 @@ StepProblem make_bounds(std::initializer_list<double> bounds) {
   return problem;
 }
 
-TEST(BoundMismatch, IsTheLargestRelativeDifference) {
-  EXPECT_EQ(bound_mismatch(make_bounds({2, 5}), std::vector<double>{4, 0, 0, 10, 0, 0}), 0);
-  EXPECT_DOUBLE_EQ(bound_mismatch(make_bounds({2, 6}), std::vector<double>{4, 9, 9, 10, 9, 9}), 0.2);
-  EXPECT_DOUBLE_EQ(bound_mismatch(make_bounds({0, 5}), std::vector<double>{4, 0, 0, 10, 0, 0}), 1);
+TEST(FrictionMismatch, WeighsEachBoundWithWhatItsContactCarries) {
+  const auto mismatch = [](std::initializer_list<double> bounds, const std::vector<double>& impulse) {
+    return friction_mismatch(make_bounds(bounds), impulse).bound_mismatch;
+  };
+  EXPECT_EQ(mismatch({2, 5}, {4, 0, 0, 10, 0, 0}), 0);
+  EXPECT_DOUBLE_EQ(mismatch({2, 6}, {4, 9, 9, 10, 9, 9}), 2.0 / 14);
+  EXPECT_DOUBLE_EQ(mismatch({0, 5}, {4, 0, 0, 10, 0, 0}), 4.0 / 14);
+  // A contact that carries nothing, or pulls, is measured by what the others carry.
+  EXPECT_DOUBLE_EQ(mismatch({1e-6, 5}, {0, 0, 0, 10, 0, 0}), 2e-7);
+  EXPECT_DOUBLE_EQ(mismatch({1e-6, 5}, {-3, 0, 0, 10, 0, 0}), 2e-7);
+  EXPECT_TRUE(std::isnan(mismatch({1, 0}, std::vector<double>(6, 0.0)))) << "nothing is carried";
 }
 
-TEST(BoundMismatch, ContactsThatCarryNothingAreMeasuredAgainstTheStep) {
+TEST(FrictionMismatch, CountsRowsThatCarryMoreThanTheirContactAllows) {
+  const auto share = [](const std::vector<double>& impulse) {
+    return friction_mismatch(make_bounds({9, 9}), impulse).friction_beyond_share;
+  };
+  EXPECT_EQ(share({4, 2, -2, 10, 5, -5}), 0);
+  EXPECT_EQ(share({4, 2 * (1 + 1e-10), -2, 10, 5, -5}), 0) << "rounding";
+  EXPECT_EQ(share({4, 2 * (1 + 1e-8), -2, 10, 5, -5}), 0.25);
+  EXPECT_EQ(share({4, 3, -3, 10, 0, -5.1}), 0.75);
+  EXPECT_EQ(share({0, 1, 0, 10, 0, 0}), 0.25) << "of a contact that carries nothing";
+}
+
+TEST(FrictionMismatch, IsNoneOfContactsWithoutBox) {
+  StepProblem problem = make_bounds({2, 6});
+  problem.contact_set.assign(6, ContactSet::box);
+  const std::vector<double> impulse = {4, 9, 9, 10, 9, 9};
+  EXPECT_DOUBLE_EQ(friction_mismatch(problem, impulse).bound_mismatch, 2.0 / 14);
+  problem.contact_set[3] = ContactSet::cone;
+  EXPECT_EQ(friction_mismatch(problem, impulse).bound_mismatch, 0);
+  EXPECT_EQ(friction_mismatch(problem, impulse).friction_beyond_share, 1);
+  problem.contact_set[0] = ContactSet::coulomb;
+  EXPECT_TRUE(std::isnan(friction_mismatch(problem, impulse).bound_mismatch));
+  EXPECT_TRUE(std::isnan(friction_mismatch(problem, impulse).friction_beyond_share));
+}
+
+TEST(LargestBoundError, IsTheLargestRelativeDifference) {
+  EXPECT_EQ(largest_bound_error(make_bounds({2, 5}), std::vector<double>{4, 0, 0, 10, 0, 0}), 0);
+  EXPECT_DOUBLE_EQ(largest_bound_error(make_bounds({2, 6}), std::vector<double>{4, 9, 9, 10, 9, 9}), 0.2);
+  EXPECT_DOUBLE_EQ(largest_bound_error(make_bounds({0, 5}), std::vector<double>{4, 0, 0, 10, 0, 0}), 1);
+}
+
+TEST(LargestBoundError, ContactsThatCarryNothingAreMeasuredAgainstTheStep) {
   // mu lambda = 5 is the largest, so the floor is 5e-6.
-  EXPECT_DOUBLE_EQ(bound_mismatch(make_bounds({1e-6, 5}), std::vector<double>{0, 0, 0, 10, 0, 0}), 0.2);
-  EXPECT_DOUBLE_EQ(bound_mismatch(make_bounds({1e-6, 5}), std::vector<double>{-3, 0, 0, 10, 0, 0}), 0.2);
-  EXPECT_EQ(bound_mismatch(make_bounds({0, 0}), std::vector<double>(6, 0.0)), 0);
+  EXPECT_DOUBLE_EQ(largest_bound_error(make_bounds({1e-6, 5}), std::vector<double>{0, 0, 0, 10, 0, 0}), 0.2);
+  EXPECT_DOUBLE_EQ(largest_bound_error(make_bounds({1e-6, 5}), std::vector<double>{-3, 0, 0, 10, 0, 0}), 0.2);
+  EXPECT_EQ(largest_bound_error(make_bounds({0, 0}), std::vector<double>(6, 0.0)), 0);
 }
 
 // --- fixed point ----------------------------------------------------------------------------------------
@@ -188,9 +235,9 @@ TEST(ConvergedFriction, BoundsMatchTheSolutionAfterwards) {
     OracleSolver solver;
     Solution solution;
     const ConvergedBounds result = converge_friction_bounds(problem, solver, {}, solution);
-    EXPECT_EQ(result.converged, result.mismatch <= kBoundTolerance) << "seed " << seed;
+    EXPECT_EQ(result.converged, result.error <= kBoundTolerance) << "seed " << seed;
     EXPECT_TRUE(result.converged || result.solves == kBoundIterationCap) << "seed " << seed;
-    EXPECT_EQ(result.mismatch, bound_mismatch(problem, solution.impulse)) << "seed " << seed;
+    EXPECT_EQ(result.error, largest_bound_error(problem, solution.impulse)) << "seed " << seed;
     EXPECT_EQ(result.last_summary.status, SolveStatus::ok);
     // The bounds in the problem are those the solution was found for.
     const OracleSolution again = solve_exactly(problem);
@@ -250,7 +297,7 @@ TEST(ConvergedFriction, CapAndFailureAreReported) {
   EXPECT_FALSE(capped.converged);
   EXPECT_EQ(capped.solves, kBoundIterationCap);
   EXPECT_EQ(jumping.solves, kBoundIterationCap);
-  EXPECT_NEAR(capped.mismatch, 0.5, 1e-12);
+  EXPECT_NEAR(capped.error, 0.5, 1e-12);
 
   JumpingSolver failing;
   failing.status = SolveStatus::not_converged;
@@ -269,7 +316,7 @@ TEST(FrictionModels, TableNamesEveryModelOnce) {
     EXPECT_NE(std::string(entry.help), "");
     EXPECT_NE(std::string(entry.reference), "");
   }
-  EXPECT_EQ(names, (std::set<std::string>{"none", "constant", "box", "box-converged"}));
+  EXPECT_EQ(names, (std::set<std::string>{"none", "constant", "box", "box-converged", "cone", "coulomb"}));
 }
 
 }  // namespace

@@ -7,7 +7,8 @@
 
 #include <algorithm>
 
-#include "harness/experiment/friction.h"
+#include "harness/experiment/friction_box.h"
+#include "harness/world/extract.h"
 #include "harness/world/contact_memory.h"
 #include "scenarios/scene_random.h"
 #include "solver/residual.h"

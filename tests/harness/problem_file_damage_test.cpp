@@ -46,6 +46,7 @@ Instead replace_attribute(const std::string& what, const Value& value) {
 }
 
 const auto kNothing = [](ProblemFile&) {};
+const auto kSets = [](ProblemFile& file) { give_sample_sets(file.problem); };
 
 // The sample has 5 bodies and 14 rows: 4 joint rows, then normal and friction row of 5 contacts in turn.
 std::vector<Damage> damaged_values() {
@@ -86,6 +87,22 @@ std::vector<Damage> damaged_values() {
        })},
       {"friction_outside", {"friction_row[5] = 14"}, p([](auto& q) { q.friction_row[5] = 14; })},
       {"mass_not_positive", {"mass[36] = -1", "positive definite"}, p([](auto& q) { q.mass[36] = -1; })},
+      {"unknown_set", {"contact_set[4] = 3", "0 (box), 1 (cone), 2 (coulomb)"}, p([](auto& q) {
+         give_sample_sets(q);
+         q.contact_set[4] = static_cast<ContactSet>(3);
+       })},
+      {"set_of_a_joint", {"contact_set[0] = 2", "on a normal row"}, p([](auto& q) {
+         give_sample_sets(q);
+         q.contact_set[0] = ContactSet::coulomb;
+       })},
+      {"set_with_bounds", {"upper[7] = 0.25", "inf where contact_set is no box"}, p([](auto& q) {
+         give_sample_sets(q);
+         q.upper[7] = 0.25;
+       })},
+      {"set_without_coefficient", {"friction_coefficient[9] = 0", "> 0"}, p([](auto& q) {
+         give_sample_sets(q);
+         q.friction_coefficient[9] = 0;
+       })},
       {"no_step_length", {"h_s = 0", "> 0"}, p([](auto& q) { q.h_s = 0; })},
       {"nan_position", {"position[4] = nan", "finite"}, [](ProblemFile& f) { f.position[4] = std::nan(""); }},
       {"infinite_orientation",
@@ -117,6 +134,27 @@ std::vector<Damage> damaged_structure() {
        {"schema = \"cleave-problem-0\"", "cleave-problem-1"},
        kNothing,
        replace_attribute("schema", std::string("cleave-problem-0"))},
+      {"sets_in_the_first_schema",
+       {"schema = \"cleave-problem-1\"", "\"cleave-problem-2\" where there is a contact_set"},
+       kSets,
+       replace_attribute("schema", std::string("cleave-problem-1"))},
+      {"no_sets_in_the_second_schema",
+       {"schema = \"cleave-problem-2\"", "\"cleave-problem-1\" where there is none"},
+       kNothing,
+       replace_attribute("schema", std::string("cleave-problem-2"))},
+      {"sets_left_out", {"schema = \"cleave-problem-2\""}, kSets, leave_out("contact_set")},
+      {"sets_of_other_rows",
+       {"shape of contact_set = (12)", "(14)"},
+       kSets,
+       replace("contact_set", {12}, std::vector<std::uint8_t>(12))},
+      {"sets_too_large",
+       {"contact_set[4] = 256", "0 to 255"},
+       kSets,
+       replace("contact_set", {14}, std::vector<int>{0, 0, 0, 0, 256, 0, 0, 0, 0, 0, 0, 0, 0, 0})},
+      {"sets_are_floats",
+       {"type of contact_set = 64-bit float"},
+       kSets,
+       replace("contact_set", {14}, std::vector<double>(14))},
       {"schema_is_a_number", {"type of attribute schema", "text"}, kNothing, replace_attribute("schema", 1)},
       {"step_is_a_fraction", {"type of attribute step", "integer"}, kNothing, replace_attribute("step", 1.5)},
       {"step_too_large",
@@ -242,7 +280,11 @@ INSTANTIATE_TEST_SUITE_P(Structure, DamagedProblemFile, ::testing::ValuesIn(dama
 // The writer of this test writes good files, too: no damage above is its doing.
 TEST(ProblemFileDamage, UndamagedSampleIsRead) {
   const TemporaryDirectory directory;
-  write_unchecked(directory / "good.h5", sample_file());
+  ProblemFile file = sample_file();
+  write_unchecked(directory / "good.h5", file);
+  EXPECT_EQ(error_of(directory / "good.h5"), "");
+  kSets(file);
+  write_unchecked(directory / "good.h5", file);
   EXPECT_EQ(error_of(directory / "good.h5"), "");
 }
 

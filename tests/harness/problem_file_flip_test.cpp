@@ -78,6 +78,27 @@ TEST_F(FlippedProblemFile, IsRefusedOrTheSame) {
   EXPECT_GT(refused, 100);  // the sample is small: half of its bytes are padding
 }
 
+// The two schemas are a byte apart, and so are the sets.
+TEST_F(FlippedProblemFile, ChangedSchemasAndSetsAreTold) {
+  EXPECT_NE(error_without("cleave-problem-1", "cleave-problem-2").find("where there is a contact_set"),
+            std::string::npos);
+  ProblemFile file = file_;
+  give_sample_sets(file.problem);
+  write_problem_file(path_, file);
+  bytes_ = read_text(path_);
+  EXPECT_NE(error_without("cleave-problem-2", "cleave-problem-1").find("where there is a contact_set"),
+            std::string::npos);
+  EXPECT_NE(error_without("contact_set", "contact_sex"), "");
+  const auto bytes_of = [](const std::vector<ContactSet>& sets) {
+    return std::string(reinterpret_cast<const char*>(sets.data()), sets.size());
+  };
+  std::vector<ContactSet> other = file.problem.contact_set;
+  other[4] = ContactSet::coulomb;
+  ASSERT_NE(other, file.problem.contact_set);
+  const std::string error = error_without(bytes_of(file.problem.contact_set), bytes_of(other));
+  EXPECT_TRUE(error.starts_with(path_.string() + ": problem_hash = \"")) << error;
+}
+
 // A bit in the last place of a number makes another problem, which only a hash can tell.
 TEST_F(FlippedProblemFile, BitsOfDataAreToldByTheHashOverThem) {
   const auto error_of_bit = [&](const std::vector<double>& array) {

@@ -66,6 +66,17 @@ inline StepProblem sample_problem(int bodies, std::uint64_t seed) {
   return p;
 }
 
+// The same with a cone and Coulomb's law in turn.
+inline void give_sample_sets(StepProblem& p) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  p.contact_set.assign(p.row_count(), ContactSet::box);
+  for (int r = 0; r < p.row_count(); ++r) {
+    if (p.friction_row[r] < 0) continue;
+    p.contact_set[p.friction_row[r]] = r % 4 == 1 ? ContactSet::cone : ContactSet::coulomb;
+    p.lower[r] = -(p.upper[r] = kInfinity);
+  }
+}
+
 inline ProblemShapes sample_shapes(int bodies, SampleRandom& random) {
   ProblemShapes shapes;
   for (int i = 0; i <= bodies; ++i) {
@@ -115,7 +126,7 @@ inline void write_unchecked(
     const std::filesystem::path& path, const ProblemFile& file,
     const Instead& instead = [](const Hdf5Writer&, const std::string&) { return false; }) {
   Hdf5Writer writer(path);
-  if (!instead(writer, "schema")) writer.attribute("schema", kProblemSchema);
+  if (!instead(writer, "schema")) writer.attribute("schema", problem_schema(file.problem));
   visit_attributes(file, [&](const std::string& name, const auto& value, Presence) {
     if (!instead(writer, name)) writer.attribute(name, value);
   });
@@ -124,6 +135,8 @@ inline void write_unchecked(
                [&](const std::string& name, const auto& values, const Hdf5Shape& shape, Presence) {
                  if (!instead(writer, name)) writer.array(name, shape, values);
                });
+  if (!file.problem.contact_set.empty() && !instead(writer, "contact_set"))
+    writer.array("contact_set", {m}, file.problem.contact_set);
   if (file.shapes) {
     const Hdf5Writer group = writer.group("shape");
     visit_shape_arrays(*file.shapes, file.shapes->geom_body.size(), file.shapes->convex_points.size() / 3,

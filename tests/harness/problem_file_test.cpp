@@ -70,6 +70,34 @@ TEST(ProblemFile, RoundTripKeepsEveryBit) {
   }
 }
 
+TEST(ProblemFile, RoundTripKeepsSetsOfContacts) {
+  for (const int bodies : {1, 5}) {
+    ProblemFile file = sample_file(bodies);
+    EXPECT_TRUE(write_and_read(file).problem.contact_set.empty());
+    give_sample_sets(file.problem);
+    const ProblemFile read = write_and_read(file);
+    EXPECT_TRUE(read.is_checked);
+    EXPECT_EQ(read.problem.contact_set, file.problem.contact_set);
+    expect_same_arrays(file, read);
+    EXPECT_EQ(problem_hash(file.problem), problem_hash(read.problem));
+  }
+}
+
+// What has no sets is a file that a program from before them reads.
+TEST(ProblemFile, SchemaIsTheFirstThatHoldsIt) {
+  const TemporaryDirectory directory;
+  ProblemFile file = sample_file();
+  const auto holds = [&](const std::string& text) {
+    write_problem_file(directory / "a.h5", file);
+    return read_text(directory / "a.h5").find(text) != std::string::npos;
+  };
+  EXPECT_TRUE(holds("cleave-problem-1"));
+  EXPECT_FALSE(holds("contact_set"));
+  give_sample_sets(file.problem);
+  EXPECT_TRUE(holds("cleave-problem-2"));
+  EXPECT_FALSE(holds("cleave-problem-1"));
+}
+
 TEST(ProblemFile, RoundTripKeepsSolutionsAndPartitions) {
   ProblemFile file = sample_file();
   StoredSolution diverged = file.solutions.begin()->second;

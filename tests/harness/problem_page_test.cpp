@@ -70,6 +70,7 @@ TEST(ProblemPage, NamesEverythingThatAFileHolds) {
   visit_attributes(file, [&](const char* name, auto&, Presence presence) { look(name, presence); });
   visit_arrays(file, 0, 0,
                [&](const char* name, auto&, const Hdf5Shape&, Presence presence) { look(name, presence); });
+  look("contact_set", Presence::optional);
   EXPECT_GE(names, 20);
 }
 

@@ -228,6 +228,11 @@ TEST_F(Verify, FindsAProblemThatIsNotTheRows) {
   expect_failure(out(), {"problem_hash"});
 }
 
+TEST_F(Verify, FindsAModelThatIsNotThatOfTheContacts) {
+  change_file([](ProblemFile& f) { f.friction_model = "cone"; });
+  expect_failure(out(), {"friction_model cone; contact_set[", "] = 0, allowed: 1"});
+}
+
 // All columns that a row is compared in but `status`, which only the file's impulses can contradict.
 const std::vector<std::string> kComparedColumns = {
     "scene",
@@ -270,6 +275,7 @@ const std::vector<std::string> kComparedColumns = {
     "kinetic_energy_j",
     "energy_excess_j",
     "bound_mismatch",
+    "friction_beyond_share",
     "part_condition_max",
     "strategy",
     "kernel",

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "harness/experiment/friction.h"
+#include "harness/experiment/friction_converged.h"
 #include "harness/world/extract.h"
 #include "harness/world/ode_world.h"
 #include "solver/registry.h"
@@ -30,8 +31,7 @@ class WorldStepper {
     const std::vector<ContactPoint> contacts = world_->collide(8, nullptr);
     problem_ = extract(*world_, contacts, options_, memory_);
     solution_.impulse = problem_.warm_impulse;
-    if (options_.friction == FrictionModel::box || options_.friction == FrictionModel::box_converged)
-      predict_friction_bounds(problem_);
+    if (const auto set = friction_model(options_.friction).set) set(problem_);
     if (options_.friction == FrictionModel::box_converged) {
       unconverged_bounds_ +=
           !converge_friction_bounds(problem_, *solver_, part_of_body_, solution_).converged;

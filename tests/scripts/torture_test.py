@@ -77,6 +77,19 @@ class JudgeTest(unittest.TestCase):
             self.assertFalse(verdict.above())
             self.assertEqual(verdict.limit, 1e-9 * max(1, abs(side)))
 
+    def test_closed_forms_of_cones_are_exact(self):
+        diagonal = 1 / MASS + COMPLIANCE
+        for side in (0.01, 0.05, 5.0, -5.0):
+            lifted = max(LOAD, (-FALL + MU * abs(side)) / (diagonal * (1 + MU * MU)))
+            for contact_set, load in ((1, lifted), (2, LOAD)):
+                friction = -np.sign(side) * min(abs(side) / diagonal, MU * load)
+                sets = {"contact_set": np.array([contact_set, 0]), "friction_row": np.array([-1, 0]),
+                        "friction_coefficient": np.array([0, MU])}
+                with self.subTest(side, contact_set=contact_set):
+                    self.assertLess(self.verdict([load, friction], side, **sets).residual, 1e-15)
+                    self.assertTrue(self.verdict([load, friction + 1e-6], side, **sets).above())
+                    self.assertTrue(self.verdict([load + 1e-6, friction], side, **sets).above())
+
     def test_a_residual_is_told_in_metres_per_second(self):
         verdict = self.verdict([1.01 * LOAD, 0])
         self.assertAlmostEqual(verdict.residual, 0.01 * LOAD * (1 / MASS + COMPLIANCE), 12)

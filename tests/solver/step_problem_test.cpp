@@ -31,6 +31,30 @@ TEST(FindProblemErrorTest, AcceptsTurnedBoxesOfContacts) {
   EXPECT_EQ(find_problem_error(problem), "");
 }
 
+void give_first_contact(StepProblem& problem, ContactSet set) {
+  problem.contact_set.assign(problem.row_count(), ContactSet::box);
+  problem.contact_set[0] = set;
+  for (int r = 1; r < 3; ++r) problem.lower[r] = -(problem.upper[r] = kInfinity);
+}
+
+TEST(FindProblemErrorTest, AcceptsConesOfContactsWithOneTangentOrTwo) {
+  StepProblem problem = make_pile(1, {});
+  problem.contact_set.assign(problem.row_count(), ContactSet::box);
+  EXPECT_EQ(find_problem_error(problem), "");
+  for (const ContactSet set : {ContactSet::cone, ContactSet::coulomb}) {
+    give_first_contact(problem, set);
+    EXPECT_EQ(find_problem_error(problem), "");
+    problem.box_angle_rad.assign(problem.row_count(), 0.0);
+    problem.box_angle_rad[3] = 0.5;  // of another contact
+    EXPECT_EQ(find_problem_error(problem), "");
+    StepProblem one = problem;
+    one.row_kind[2] = RowKind::bilateral;
+    one.friction_row[2] = -1;
+    one.friction_coefficient[2] = 0;
+    EXPECT_EQ(find_problem_error(one), "");
+  }
+}
+
 TEST(FindProblemErrorTest, AcceptsBodiesWithoutRowsAndNothingAtAll) {
   StepProblem problem;
   problem.h_s = kTestStep_s;
@@ -147,6 +171,61 @@ const Damage kDamages[] = {
      "box_angle_rad["},
     {"BoxAngleOfTwoCompliances", [](StepProblem& p) { turn_first_box(p, 0.5), p.compliance[2] *= 2; },
      "box_angle_rad[0] = 0.5, allowed: 0 where the two friction rows differ in compliance, here "},
+    {"ShapeContactSet", [](StepProblem& p) { p.contact_set = {ContactSet::cone}; },
+     "size of contact_set = 1, allowed: "},
+    {"ContactSetUnknown", [](StepProblem& p) { give_first_contact(p, static_cast<ContactSet>(3)); },
+     "contact_set[0] = 3, allowed: 0 (box), 1 (cone), 2 (coulomb)"},
+    {"ContactSetOnFriction",
+     [](StepProblem& p) { give_first_contact(p, ContactSet::box), p.contact_set[1] = ContactSet::cone; },
+     "contact_set[1] = 1, allowed: 0 (box) but on a normal row that its one or two"},
+    {"ContactSetOnBilateral",
+     [](StepProblem& p) { give_first_contact(p, ContactSet::cone), p.row_kind[0] = RowKind::bilateral; },
+     "contact_set[0] = 1, allowed: 0 (box) but on a normal row"},
+    {"ContactSetWithoutTangents",
+     [](StepProblem& p) {
+       give_first_contact(p, ContactSet::coulomb);
+       for (int r : {1, 2}) make_normal(p, r), p.friction_coefficient[r] = 0;
+     },
+     "contact_set[0] = 2, allowed: 0 (box) but on a normal row"},
+    {"ContactSetOfThreeTangents",
+     [](StepProblem& p) {
+       give_first_contact(p, ContactSet::cone);
+       p.row_kind[3] = RowKind::friction, p.friction_row[3] = 0;
+       for (int k : {6, 7}) p.row_body[k] = p.row_body[k - 6];
+     },
+     "contact_set[0] = 1, allowed: 0 (box) but on a normal row that its one or two"},
+    {"ContactSetOfOtherBodies",
+     [](StepProblem& p) { give_first_contact(p, ContactSet::cone), p.row_body[3] = 1; },
+     "contact_set[0] = 1, allowed: 0 (box) but on a normal row"},
+    {"ContactSetOfStrayFriction",
+     [](StepProblem& p) {
+       give_first_contact(p, ContactSet::cone), p.friction_row[4] = 0;
+       for (int k : {8, 9}) p.row_body[k] = p.row_body[k - 8];
+     },
+     "friction_row[4] = 0, allowed: another row, as contact_set there is no box"},
+    {"ContactSetWithoutMu",
+     [](StepProblem& p) {
+       give_first_contact(p, ContactSet::cone), p.friction_coefficient[1] = p.friction_coefficient[2] = 0;
+     },
+     "friction_coefficient[1] = 0, allowed: > 0 where contact_set is no box"},
+    {"ContactSetOfTwoMus",
+     [](StepProblem& p) { give_first_contact(p, ContactSet::cone), p.friction_coefficient[2] = 0.25; },
+     "friction_coefficient[2] = 0.25, allowed: that of the row before, 0.5, where contact_set is no box"},
+    {"ContactSetLowerOfNormal",
+     [](StepProblem& p) { give_first_contact(p, ContactSet::cone), p.lower[0] = -1; },
+     "lower[0] = -1, allowed: 0 where contact_set is no box"},
+    {"ContactSetUpperOfNormal",
+     [](StepProblem& p) { give_first_contact(p, ContactSet::cone), p.upper[0] = 9; },
+     "upper[0] = 9, allowed: inf where contact_set is no box"},
+    {"ContactSetLowerOfFriction",
+     [](StepProblem& p) { give_first_contact(p, ContactSet::cone), p.lower[2] = -2; },
+     "lower[2] = -2, allowed: -inf where contact_set is no box"},
+    {"ContactSetUpperOfFriction",
+     [](StepProblem& p) { give_first_contact(p, ContactSet::cone), p.upper[1] = 2; },
+     "upper[1] = 2, allowed: inf where contact_set is no box"},
+    {"ContactSetOfATurnedBox",
+     [](StepProblem& p) { give_first_contact(p, ContactSet::cone), turn_first_box(p, 0.5); },
+     "box_angle_rad[0] = 0.5, allowed: 0 where contact_set is no box"},
     {"MassAsymmetric", [](StepProblem& p) { p.mass[36 + 6] = 1e-6; }, "mass[42] = 1e-06, allowed: symmetric"},
     {"MassZero", [](StepProblem& p) { p.mass[36 + 7] = 0; },
      "mass[43] = 0, allowed: symmetric positive definite"},

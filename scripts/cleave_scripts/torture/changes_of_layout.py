@@ -108,7 +108,7 @@ def _all_huge(file, dice):
     """Sizes that agree with each other."""
     rows = dice.choice(HUGE[:2])
     for name in ("row_body", "jacobian", "rhs", "compliance", "lower", "upper", "friction_row", "friction_coefficient",
-                 "row_kind", "row_constraint", "contact_point", "warm_impulse"):
+                 "row_kind", "row_constraint", "contact_point", "warm_impulse", "contact_set"):
         if name in file:
             rest, kind = file[name].shape[1:], file[name].dtype
             del file[name]
@@ -201,7 +201,7 @@ def _control_text(file, dice):
 
 
 def _wrong_schema(file, dice):
-    file.attrs["schema"] = dice.choice(["cleave-problem-2", "", "cleave-problem-1\n", "cleave-problem-11", "CLEAVE"])
+    file.attrs["schema"] = dice.choice(["cleave-problem-2", "cleave-problem-3", "", "cleave-problem-1\n", "cleave-problem-11", "CLEAVE"])
 
 
 def _wrong_attribute(file, dice):

@@ -185,6 +185,52 @@ def _constraint_ids(file, dice):
     file["row_constraint"][...] = [dice.choice([0, 1, -1, 2**31 - 1]) for _ in range(len(file["rhs"]))]
 
 
+def _sets(file, dice):
+    """Contacts with a cone or Coulomb's law in the place of their boxes."""
+    rows = np.flatnonzero((file["row_kind"][:] == 2) & (file["friction_coefficient"][:] > 0))
+    sets = np.zeros(len(file["rhs"]), "u1")
+    sets[file["friction_row"][:][rows]] = dice.choice([1, 2])
+    rewrite(file, "contact_set", sets)
+    lower, upper = file["lower"][:], file["upper"][:]
+    lower[rows], upper[rows] = -np.inf, np.inf
+    file["lower"][...], file["upper"][...] = lower, upper
+    file.attrs["schema"] = "cleave-problem-2"
+    return rows
+
+
+def _some_sets(file, dice):
+    """Boxes beside them: those without bounds carry what they must."""
+    _sets(file, dice)
+    for row in rows_of_kind(file, 1):
+        if dice.random() < 0.3:
+            file["contact_set"][row] = dice.randrange(3) if file["contact_set"][row] else 0
+
+
+def _unknown_set(file, dice):
+    _sets(file, dice)
+    put(file, "contact_set", dice.choice([3, 7, 255]), dice)
+
+
+def _set_of_no_contact(file, dice):
+    _sets(file, dice)
+    others = np.flatnonzero(file["row_kind"][:] != 1)
+    row = dice.choice(list(others)) if len(others) else 0
+    file["contact_set"][row] = 1 if len(others) else 9
+
+
+def _bounds_beside_a_set(file, dice):
+    rows = _sets(file, dice)
+    if len(rows):
+        file[dice.choice(["lower", "upper"])][dice.choice(list(rows))] = 0.0
+    else:
+        file["contact_set"][0] = 9
+
+
+def _set_in_the_first_schema(file, dice):
+    _sets(file, dice)
+    file.attrs["schema"] = "cleave-problem-1"
+
+
 def _wild_step(file, dice):
     file.attrs["h_s"] = dice.choice([0.0, -1.0, float("nan"), float("inf"), -float("inf"), -0.0])
 
@@ -226,4 +272,10 @@ CHANGES = (
     ("ids of constraints", ANY, _constraint_ids),
     ("a step that is none", REFUSED, _wild_step),
     ("another step", ANY, _other_step),
+    ("contacts with a cone or Coulomb's law", ANY, _sets),
+    ("such contacts beside others", ANY, _some_sets),
+    ("a set of a contact that is none", REFUSED, _unknown_set),
+    ("a set of a row that begins no contact", REFUSED, _set_of_no_contact),
+    ("bounds beside a set", REFUSED, _bounds_beside_a_set),
+    ("sets in a file of the first schema", REFUSED, _set_in_the_first_schema),
 )

@@ -3,14 +3,15 @@ import h5py
 
 REQUIRED = ("mass", "free_velocity", "row_body", "jacobian", "rhs", "compliance", "lower", "upper", "friction_row",
             "friction_coefficient")
-OPTIONAL = ("row_kind", "row_constraint", "contact_point", "warm_impulse", "position", "orientation", "body_group")
+OPTIONAL = ("row_kind", "row_constraint", "contact_point", "warm_impulse", "position", "orientation", "body_group",
+            "contact_set")
 REQUIRED_ATTRIBUTES = ("schema", "h_s")
 OPTIONAL_ATTRIBUTES = ("scene", "step", "seed", "friction_model", "erp", "cfm")
 FLOATS = ("mass", "free_velocity", "jacobian", "rhs", "compliance", "lower", "upper", "friction_coefficient",
           "contact_point", "warm_impulse", "position", "orientation")
 INTEGERS = ("row_body", "friction_row", "row_kind", "row_constraint")
 PER_ROW = ("row_body", "jacobian", "rhs", "compliance", "lower", "upper", "friction_row", "friction_coefficient", "row_kind",
-           "row_constraint", "contact_point", "warm_impulse")
+           "row_constraint", "contact_point", "warm_impulse", "contact_set")
 GROUPS = ("shape", "solution", "partition")
 
 

@@ -41,6 +41,7 @@ class Problem:
         self.rhs, self.compliance, self.lower, self.upper = (file[name][:].astype(EXTENDED)
                                                              for name in ("rhs", "compliance", "lower", "upper"))
         self.inverse_mass = inverses(self.mass)
+        self.contacts = _contacts(file) if "contact_set" in file else []
 
     def velocity(self, impulse):
         """v0 + M^-1 J^T impulse, (n, 6)"""
@@ -70,7 +71,11 @@ class Problem:
         diagonal = self.diagonal()
         moved = diagonal * abs(impulse - np.clip(impulse - slack / diagonal, self.lower, self.upper))
         endless = np.isinf(np.where(slack > 0, self.lower, self.upper))
-        return np.where(diagonal > 0, moved, np.where(endless, abs(slack), 0))  # the limit for a diagonal that goes to 0
+        residuals = np.where(diagonal > 0, moved, np.where(endless, abs(slack), 0))  # the limit for a diagonal that goes to 0
+        for rows, is_coulomb, mu in self.contacts:
+            largest = np.max(np.where(diagonal > 0, diagonal, 1)[rows])
+            residuals[rows] = _contact_residual(impulse[rows], slack[rows], largest, mu, is_coulomb)
+        return residuals
 
     def rounding(self, impulse):
         """A bound of the terms that cancel, times the rounding of one of them."""
@@ -82,6 +87,29 @@ class Problem:
         speed = abs(self.free_velocity) + np.einsum("nij,nj->ni", abs(self.inverse_mass), force)
         terms = sum((abs(self.jacobian[:, side]) * speed[self.bodies[:, side]]).sum(1) for side in (0, 1))
         return ROUNDING * np.max(terms + self.compliance * abs(impulse) + abs(self.rhs), initial=0)
+
+
+def _contacts(file):
+    """[(rows, whether Coulomb's law, mu)] of the contacts that have no box."""
+    sets, normals = file["contact_set"][:], file["friction_row"][:]
+    mu = file["friction_coefficient"][:].astype(EXTENDED)
+    found = [(np.concatenate([[row], np.flatnonzero(normals == row)]), sets[row] == 2) for row in np.flatnonzero(sets)]
+    return [(rows, is_coulomb, mu[rows[1]]) for rows, is_coulomb in found]
+
+
+def _contact_residual(impulse, slack, diagonal, mu, is_coulomb):
+    """d |lambda - P(lambda - w / d)|, P the projection on the cone."""
+    slack = slack.copy()
+    slack[0] += mu * np.sqrt(np.sum(slack[1:]**2)) if is_coulomb else 0
+    point = impulse - slack / diagonal
+    length = np.sqrt(np.sum(point[1:]**2))
+    if length <= mu * point[0]:
+        return abs(slack)
+    if mu * length <= -point[0]:
+        return diagonal * abs(impulse)
+    normal = (point[0] + mu * length) / (1 + mu * mu)
+    nearest = np.concatenate([[normal], mu * normal * point[1:] / length])
+    return diagonal * abs(impulse - nearest)
 
 
 def inverses(matrices):

@@ -25,7 +25,8 @@ def meaning(path):
 def _zeros(arrays):
     """Defaults that depend on sizes alone."""
     bodies, rows = len(arrays["mass"]), len(arrays["rhs"])
-    return {"contact_point": np.zeros((rows, 3)), "warm_impulse": np.zeros(rows), "position": np.zeros((bodies, 3)),
+    return {"contact_point": np.zeros((rows, 3)), "warm_impulse": np.zeros(rows), "contact_set": np.zeros(rows),
+            "position": np.zeros((bodies, 3)),
             "orientation": np.tile([1.0, 0, 0, 0], (bodies, 1)), "body_group": np.zeros(0)}
 
 

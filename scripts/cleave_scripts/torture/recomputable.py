@@ -18,7 +18,8 @@ PARTS = ("parts_before parts max_part_bodies_before max_part_bodies cut_pairs_be
          "interface_rows interface_bodies_before interface_bodies interface_cover_bodies contiguous_before contiguous "
          "part_mass_ratio_max").split()
 JUDGED = ("residual_m_per_s residual_bilateral_m_per_s residual_normal_m_per_s residual_friction_m_per_s residual_relative "
-          "largest_free_velocity_m_per_s kinetic_energy_j energy_excess_j bound_mismatch part_condition_max").split()
+          "largest_free_velocity_m_per_s kinetic_energy_j energy_excess_j bound_mismatch friction_beyond_share "
+          "part_condition_max").split()
 STORED = "strategy kernel solution_hash".split()
 OF_GOOD_ROWS = "status status_reason".split()
 

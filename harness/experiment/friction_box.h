@@ -1,0 +1,23 @@
+// The friction model `box`: bounds from predicted normal impulses, frozen before the solve.
+#pragma once
+
+#include <span>
+
+#include "solver/step_problem.h"
+
+namespace cleave {
+
+inline constexpr int kPredictionSweeps = 5;
+
+// Starts from warm_impulse, runs kPredictionSweeps projected Gauss-Seidel sweeps in row order, in
+// which a friction row is clamped to +-mu times the present impulse of its normal row, and freezes the bounds
+// at +-mu times the resulting normal impulses. The impulses themselves are thrown away. O(rows) time.
+void predict_friction_bounds(StepProblem& problem);
+
+// mu times the normal impulse of a friction row's contact; lambda_n below zero counts as zero. impulse: (m).
+double coulomb_bound(const StepProblem& problem, int row, std::span<const double> impulse);
+
+// Freezes the bounds at +-mu times these normal impulses.
+void set_coulomb_bounds(std::span<const double> impulse, StepProblem& problem);
+
+}  // namespace cleave
