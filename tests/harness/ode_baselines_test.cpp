@@ -8,8 +8,8 @@
 #include <algorithm>
 
 #include "harness/experiment/friction_box.h"
-#include "harness/world/extract.h"
 #include "harness/world/contact_memory.h"
+#include "harness/world/extract.h"
 #include "scenarios/scene_random.h"
 #include "solver/residual.h"
 #include "tests/harness/dense_oracle.h"
