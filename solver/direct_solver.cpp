@@ -128,10 +128,10 @@ Strategy& DirectSolver::strategy(std::string_view name) {
   throw std::logic_error("no strategy of this name: " + std::string(name));
 }
 
-// What auto picks takes every set; a named strategy must take it from its first link on.
+// auto picks the interior point where a set is no interval; a named strategy must take it from its first link on.
 std::string DirectSolver::refuse_set(const StepProblem& problem) {
-  if (strategy_ == "auto" || strategy(strategy_).takes_turned_boxes()) return {};
-  return find_set_refusal("strategy", strategy_, problem);
+  const SetKind taken = strategy(strategy_ == "auto" ? "interior-point" : strategy_).takes();
+  return find_set_refusal("strategy", strategy_, problem, taken);
 }
 
 // Rows between the same bodies, or at least between pairs that the analysed pattern has a place for.

@@ -5,6 +5,20 @@
 #include <sstream>
 
 namespace cleave {
+namespace {
+
+// The first row of that kind, or the number of rows.
+std::size_t first_turned(const StepProblem& problem) {
+  const auto turned = [](double angle) { return angle != 0; };
+  return std::ranges::find_if(problem.box_angle_rad, turned) - problem.box_angle_rad.begin();
+}
+
+std::size_t first_cone(const StepProblem& problem) {
+  const auto no_box = [](ContactSet set) { return set != ContactSet::box; };
+  return std::ranges::find_if(problem.contact_set, no_box) - problem.contact_set.begin();
+}
+
+}  // namespace
 
 void ImpulseSet::bind(const StepProblem& problem) {
   problem_ = &problem;
@@ -42,18 +56,27 @@ double ImpulseSet::residual(int first, int last, std::span<const double> d, std:
   return worst;
 }
 
-bool has_intervals_only(const StepProblem& problem) {
-  return std::ranges::all_of(problem.box_angle_rad, [](double angle) { return angle == 0; });
+SetKind hardest_set(const StepProblem& problem) {
+  if (first_cone(problem) < problem.contact_set.size()) return SetKind::cones;
+  return first_turned(problem) < problem.box_angle_rad.size() ? SetKind::turned_boxes : SetKind::intervals;
 }
 
-std::string find_set_refusal(std::string_view kind, std::string_view name, const StepProblem& problem) {
-  const auto turned = std::ranges::find_if(problem.box_angle_rad, [](double angle) { return angle != 0; });
-  if (turned == problem.box_angle_rad.end()) return {};
+std::string find_set_refusal(std::string_view kind, std::string_view name, const StepProblem& problem,
+                             SetKind taken) {
+  const SetKind hardest = hardest_set(problem);
+  if (hardest <= taken) return {};
   std::ostringstream text;
-  text << kind << " " << name
-       << " takes an interval for every row, not a box turned in its tangent plane: box_angle_rad["
-       << turned - problem.box_angle_rad.begin() << "] = " << *turned
-       << ", allowed: 0 (strategy interior-point takes others)";
+  text << kind << " " << name << " takes "
+       << (taken == SetKind::intervals ? "an interval for every row" : "boxes, turned or not");
+  if (hardest == SetKind::cones) {
+    const std::size_t row = first_cone(problem);
+    text << ", not a contact with a cone or Coulomb's law: contact_set[" << row
+         << "] = " << static_cast<int>(problem.contact_set[row]) << ", allowed: 0";
+  } else {
+    const std::size_t row = first_turned(problem);
+    text << ", not a box turned in its tangent plane: box_angle_rad[" << row
+         << "] = " << problem.box_angle_rad[row] << ", allowed: 0 (strategy interior-point takes others)";
+  }
   return text.str();
 }
 

@@ -51,11 +51,15 @@ class ImpulseSet {
   std::vector<WeightBlock> axes_;
 };
 
-// Whether every row of a problem has an interval of its own.
-bool has_intervals_only(const StepProblem& problem);
+// The sets that an algorithm takes; one that takes a kind takes those before it.
+enum class SetKind { intervals, turned_boxes, cones };
 
-// Why an algorithm that takes nothing but intervals refuses a problem; empty where it has nothing else.
-// kind and name as in "strategy" "pivot".
-std::string find_set_refusal(std::string_view kind, std::string_view name, const StepProblem& problem);
+// The last kind of which a problem has a set.
+SetKind hardest_set(const StepProblem& problem);
+
+// Why an algorithm that takes sets of this kind refuses a problem; empty where it has no others. kind and name as in
+// "strategy" "pivot".
+std::string find_set_refusal(std::string_view kind, std::string_view name, const StepProblem& problem,
+                             SetKind taken = SetKind::intervals);
 
 }  // namespace cleave

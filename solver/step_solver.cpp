@@ -41,7 +41,7 @@ SolveSummary StepSolver::solve(const StepProblem& problem, const Parts& parts, S
   summary.message = find_problem_error(problem);
   if (summary.message.empty() && uses_partition())
     summary.message = parts_check_.find_error(parts, problem.body_count());
-  if (summary.message.empty() && !has_intervals_only(problem)) summary.message = refuse_set(problem);
+  if (summary.message.empty() && hardest_set(problem) > SetKind::intervals) summary.message = refuse_set(problem);
   if (!summary.message.empty()) {
     summary.status = SolveStatus::refused;
     return summary;

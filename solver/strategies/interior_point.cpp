@@ -22,7 +22,7 @@ class InteriorPoint : public Strategy {
  public:
   explicit InteriorPoint(const InteriorConstants& constants) : constants_(constants), iterate_(constants) {}
   bool run(SolveState& state) override;
-  bool takes_turned_boxes() const override { return true; }
+  SetKind takes() const override { return SetKind::turned_boxes; }
 
  private:
   enum class Progress { good, finished, rounding };

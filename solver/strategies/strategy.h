@@ -17,8 +17,8 @@ class Strategy {
   // True when the residual reached the target, or stopped falling below the limit of an exact answer. False
   // leaves the best impulses it has, for the next strategy or as a result that is reported not converged.
   virtual bool run(SolveState& state) = 0;
-  // Whether it takes impulse sets that are no intervals of the rows (StepProblem::box_angle_rad).
-  virtual bool takes_turned_boxes() const { return false; }
+  // The impulse sets that it takes.
+  virtual SetKind takes() const { return SetKind::intervals; }
 };
 
 std::unique_ptr<Strategy> make_pivot(const Settings& settings);

@@ -1,6 +1,7 @@
 // Who takes no turned box refuses it by name.
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <string>
 
 #include "solver/registry.h"
@@ -50,6 +51,27 @@ TEST(TurnedBoxRefusalTest, EveryBaselineRefusesByName) {
     ++refused;
   }
   EXPECT_GE(refused, 1);
+}
+
+// No solver takes a cone: every one says so, by name, and leaves the impulses alone.
+TEST(ConeRefusalTest, EverySolverRefusesByName) {
+  StepProblem problem = make_turned_pile(1, 1e-1);
+  problem.box_angle_rad.clear();
+  problem.contact_set.assign(problem.row_count(), ContactSet::box);
+  for (int r = 0; r < problem.row_count(); ++r) {
+    const int normal = problem.friction_row[r];
+    if (normal < 0) continue;
+    problem.contact_set[normal] = ContactSet::cone;
+    problem.upper[r] = std::numeric_limits<double>::infinity();
+    problem.lower[r] = -problem.upper[r];
+  }
+  ASSERT_EQ(find_problem_error(problem), "");
+  for (const std::string& name : all_solver_names()) {
+    const Answer answer = solve(name, problem, single_part(problem.body_count()));
+    EXPECT_EQ(answer.summary.status, SolveStatus::refused) << name;
+    EXPECT_NE(answer.summary.message.find("contact_set["), std::string::npos) << answer.summary.message;
+    EXPECT_TRUE(same_bytes(answer.solution.impulse, cold_start(problem).impulse)) << name;
+  }
 }
 
 // A solver of another folder that says nothing about sets.
