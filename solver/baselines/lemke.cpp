@@ -21,7 +21,6 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <sstream>
 #include <string>
 

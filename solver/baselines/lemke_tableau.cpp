@@ -79,15 +79,15 @@ int LemkeTableau::leaving(int entering) {
 }
 
 // Leaves those candidates whose ratio of this column to the entering one is the least.
-double LemkeTableau::keep_least(int column, int entering) {
+void LemkeTableau::keep_least(int column, int entering) {
   const auto ratio = [&](int row) { return at(row, column) / at(row, entering); };
-  double least = ratio(candidates_.front()), unit = column == 0 ? scale_ : 1;
+  const double unit = column == 0 ? scale_ : 1;
+  double least = ratio(candidates_.front());
   for (const int row : candidates_) least = std::min(least, ratio(row));
   std::erase_if(candidates_, [&](int row) {
     const double above = at(row, column) - least * at(row, entering);
     return above > kTie * std::max(unit, std::abs(at(row, column)));
   });
-  return least;
 }
 
 void LemkeTableau::pivot(int row, int column) {

@@ -49,7 +49,7 @@ class LemkeTableau {
   int complement(int column) const { return column <= n_ ? column + n_ : column - n_; }
   int first_leaving() const;
   int leaving(int entering);
-  double keep_least(int column, int entering);
+  void keep_least(int column, int entering);
   void pivot(int row, int column);
   void read_basis();
 
