@@ -76,6 +76,7 @@ COMMANDS = {
     "partition_over_time": Command({"--steps": "count", **MEASURED}, runs=True),
     "partition_regret": Command({"--rounds": "count", "--threads": "count", **MEASURED}, runs=True),
     "partition_worth": Command({"--repeats": "count", **MEASURED}, runs=True),
+    "peers_mujoco": Command({"--bodies": "count", "--repeats": "count", "--later": "count", **MEASURED}, runs=True),
     "readme_figures": Command(MEASURED, ("{tree}",), ("{tree}",)),
     "readme_tables": Command({"--check": "", "--root": "input directory"}, ("--root", "{empty}"), ("{empty}",)),
     "reference": Command({"--root": "input directory"}, ("--root", "{empty}"), ("{empty}",), runs=True),
