@@ -14,12 +14,13 @@ GEOMS = {
     3: ("cylinder", lambda size: [size[0], size[1] / 2]),
     5: ("plane", lambda size: [0, 0, 1]),
 }
+CONES = ("pyramidal", "elliptic")
 # Numbers of 8 bytes that MuJoCo keeps ready for one step; it also keeps a dense matrix of as many rows as there may be.
 STACK = 50_000_000
 
 MODEL = """<mujoco>
   <compiler angle="radian"/>
-  <option timestep="{step}" gravity="0 0 -9.81" solver="Newton" cone="elliptic" jacobian="sparse"/>
+  <option timestep="{step}" gravity="0 0 -9.81" cone="{cone}"/>
   <size njmax="{rows}" nconmax="{rows}" nstack="{stack}"/>
   <default><geom friction="{mu} 0 0" condim="3"/></default>
   <worldbody>
@@ -31,7 +32,7 @@ MODEL = """<mujoco>
 
 
 def most_rows(pile):
-    """It may find more contacts than ODE."""
+    """It may find more contacts than ODE, and its pyramids have four rows for our three."""
     return 1000 + 2 * len(pile["row_kind"])
 
 
@@ -72,9 +73,10 @@ def _body(pile, body):
     return f'<body pos="{text_of(pose[0])}" quat="{text_of(pose[1])}"><freejoint/>{inertial}{"".join(geoms)}</body>'
 
 
-def model_of(pile):
-    """MJCF."""
+def model_of(pile, cone):
+    """MJCF, with everything but the cone, of CONES, as MuJoCo ships it: Newton's method, and sparse matrices where there is much."""
     return MODEL.format(
+        cone=cone,
         step=f"{pile['step']:.17g}", rows=most_rows(pile), stack=STACK, mu=f"{pile['friction_coefficient'].max(initial=0):.17g}",
         static="\n".join(_geom(kind, *rest) for of, kind, *rest in pile["geoms"] if of < 0),
         bodies="\n".join(_body(pile, body) for body in range(len(pile["position"]))))
