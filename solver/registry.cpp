@@ -1,6 +1,7 @@
 #include "solver/registry.h"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "harness/base/names.h"
@@ -42,6 +43,17 @@ std::string owners(const std::string& parameter) {
   for (const SolverRow& row : solver_table())
     if (has(row, parameter)) names.push_back(row.name);
   return joined(names);
+}
+
+std::vector<SolverRow>& added_solvers() {
+  static std::vector<SolverRow> rows;
+  return rows;
+}
+
+std::vector<SolverRow> with_added(std::span<const SolverRow> rows) {
+  std::vector<SolverRow> all(rows.begin(), rows.end());
+  std::ranges::copy(added_solvers(), std::back_inserter(all));
+  return all;
 }
 
 }  // namespace
@@ -180,7 +192,12 @@ std::span<const SolverRow> solver_table() {
        nullptr,
        make_lemke},
   };
-  return table;
+  static const std::vector<SolverRow> all = with_added(table);
+  return all;
+}
+
+void add_solvers(std::span<const SolverRow> rows) {
+  std::ranges::copy(rows, std::back_inserter(added_solvers()));
 }
 
 bool runs_on(const StrategyRow& strategy, const KernelRow& kernel) {
@@ -225,6 +242,7 @@ std::vector<Parameter> solver_parameters(const std::string& name) {
 
 std::unique_ptr<StepSolver> make_step_solver(const Algorithm& algorithm, const SolveOptions& options) {
   const SolverRow* row = find_row(solver_table(), algorithm.name);
+  if (row != nullptr) check_available("solver", *row);
   if (row != nullptr && row->make != nullptr) return row->make(options, algorithm.settings);
   const SolverHalves halves = solver_halves(algorithm.name);
   std::unique_ptr<StepSolver> solver =

@@ -44,6 +44,10 @@ std::span<const StrategyRow> strategy_table();
 std::span<const KernelRow> kernel_table();
 std::span<const SolverRow> solver_table();
 
+// Rows of the program at hand, after those of this folder: other people's solvers, which nobody else is to link. Before
+// the tables are first asked for; a row whose library was not there has no `make` and says so (`unavailable`).
+void add_solvers(std::span<const SolverRow> rows);
+
 // Whether strategy:kernel is a solver.
 bool runs_on(const StrategyRow& strategy, const KernelRow& kernel);
 

@@ -27,7 +27,7 @@ std::vector<std::string> status_names() { return {kStatusNames.begin(), kStatusN
 
 bool has_result(SolveStatus status) {
   return status == SolveStatus::ok || status == SolveStatus::not_converged ||
-         status == SolveStatus::timeout || status == SolveStatus::diverged;
+         status == SolveStatus::diverged;
 }
 
 std::string StepSolver::refuse_set(const StepProblem& problem) {

@@ -26,7 +26,8 @@ const char* to_string(SolveStatus status);
 std::optional<SolveStatus> find_status(std::string_view name);  // by what to_string says
 std::vector<std::string> status_names();
 
-// Whether a solve with this status left impulses that can be judged, and numbers about itself.
+// Whether a solve with this status left impulses that can be judged, and numbers about itself. One that was out of time
+// was ended from outside and left none.
 bool has_result(SolveStatus status);
 
 // Of every solver. What one of them alone has are parameters of its registry row.

@@ -34,6 +34,7 @@ BAD = {
     "rock piles": ("", "200,", "201"),
     "solver": ("", "shur"),
     "format": ("", "markdow"),
+    "cones": ("", "eliptic"),
     "condition": ("", "solver", "=schur"),
     "figures": ("", "figure1,", "figure9"),
     "colour": ("", "parts"),
@@ -49,7 +50,7 @@ BAD = {
 NEAR = {
     "rock_pill": "rock_pile", "no_contract": "no_contact", "exakt": "exact", "reech": "reach", "shur": "schur",
     "markdow": "markdown", "201": "200", "figure9": "figure", "parts": "part",
-    "edit": "edits", "scen": "scene"
+    "edit": "edits", "scen": "scene", "eliptic": "elliptic"
 }
 
 MEASURED = {"--out": "output directory"}
@@ -76,6 +77,7 @@ COMMANDS = {
     "partition_over_time": Command({"--steps": "count", **MEASURED}, runs=True),
     "partition_regret": Command({"--rounds": "count", "--threads": "count", **MEASURED}, runs=True),
     "partition_worth": Command({"--repeats": "count", **MEASURED}, runs=True),
+    "peers_mujoco": Command({"--bodies": "count", "--cone": "cones", "--repeats": "count", "--later": "count", **MEASURED}, runs=True),
     "readme_figures": Command(MEASURED, ("{tree}",), ("{tree}",)),
     "readme_tables": Command({"--check": "", "--root": "input directory"}, ("--root", "{empty}"), ("{empty}",)),
     "reference": Command({"--root": "input directory"}, ("--root", "{empty}"), ("{empty}",), runs=True),

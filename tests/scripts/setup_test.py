@@ -95,11 +95,12 @@ class SetupTest(StandInTest):
         for preset in ("release", "asan"):
             self.assertEqual(self.setup_script("--preset", preset).returncode, 0)
         self.assertFalse([line for line in self.log() if line.startswith("apt-get")])
-        for preset in ("tsan", "fuzz"):
+        for preset in ("tsan", "fuzz", "peers"):
             self.assertEqual(self.setup_script("--preset", preset).returncode, 0)
         installs = [line for line in self.log() if " install " in line]
-        self.assertEqual([[word for word in install.split()[2:] if word[0] != "-"] for install in installs],
-                         2 * [["clang", "libclang-rt-14-dev", "llvm-14", "libomp-14-dev"]])
+        clang = ["clang", "libclang-rt-14-dev", "llvm-14", "libomp-14-dev"]
+        peers = ["libbullet-dev", "libdart-dev", "libsiconos-numerics-dev", "coinor-libipopt-dev", "libmujoco-dev"]
+        self.assertEqual([[word for word in install.split()[2:] if word[0] != "-"] for install in installs], [clang, clang, peers])
 
     def test_what_another_package_provides_is_there(self):
         self.install([name for name in self.packages if name not in ("npm", "cmake")] + ["node, npm, cmake (= 3)"])

@@ -1,0 +1,140 @@
+// Solvers `siconos-nsgs` and `siconos-newton`: Coulomb's law by the nonsmooth Gauss-Seidel method and the semi-smooth Newton method
+// (Alart and Curnier) of Siconos 4.4, both on the local form
+//
+//     u = W r + q,   W = J M^-1 J^T + C,   q = J v0 - b,    r_n >= 0, u_n >= 0, r_n u_n = 0,   |r_t| <= mu r_n and, sliding,
+//     r_t = -mu r_n u_t / |u_t|   (Acary, Bremond and Huber, "On solving contact problems with Coulomb friction", 2018).
+//
+// They stop at an error (siconos.h) of `peer-tolerance`. W goes over in blocks of 3x3 to the first, as triplets to the second.
+#include "harness/peers/siconos.h"
+
+#include <numerics/FrictionContactProblem.h>
+#include <numerics/Friction_cst.h>
+#include <numerics/NonSmoothDrivers.h>
+#include <numerics/NumericsMatrix.h>
+#include <numerics/NumericsSparseMatrix.h>
+#include <numerics/SolverOptions.h>
+#include <numerics/SparseBlockMatrix.h>
+#include <numerics/fc3d_compute_error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include "harness/base/stopwatch.h"
+#include "harness/peers/dense_problem.h"
+#include "harness/peers/peer.h"
+
+namespace cleave {
+namespace {
+
+constexpr int kDimension = 3;  // a normal and two tangents
+
+struct DeleteOptions {
+  void operator()(SolverOptions* options) const { solver_options_delete(options); }
+};
+
+enum class Storage { triplets, blocks };
+
+// A problem of Siconos, in memory of its own kind: its functions free what they were given with free().
+class LocalForm {
+ public:
+  LocalForm(const StepProblem& step, Storage storage) {
+    const DenseProblem dense = make_dense_problem(step);
+    const int m = dense.rows, contacts = m / kDimension;
+    q_ = dense.right_side;
+    for (double& value : q_) value = -value;
+    for (int c = 0; c < contacts; ++c) mu_.push_back(step.friction_coefficient[kDimension * c + 1]);
+    matrix_ = NM_create(NM_SPARSE, m, m);
+    NM_triplet_alloc(matrix_, m);
+    matrix_->matrix2->origin = NSM_TRIPLET;
+    for (int r = 0; r < m; ++r)
+      for (int c = 0; c < m; ++c)
+        if (const double value = dense.matrix[static_cast<std::size_t>(m) * r + c]; value != 0)
+          NM_entry(matrix_, r, c, value);
+    if (storage == Storage::blocks) {
+      NumericsMatrix* triplets = matrix_;
+      SparseBlockStructuredMatrix* blocks = SBM_new();
+      SBM_from_csparse(kDimension, NM_csc(triplets), blocks);
+      matrix_ = NM_new_SBM(m, m, blocks);
+      NM_free(triplets);
+    }
+    problem_ = {kDimension, contacts, matrix_, q_.data(), mu_.data()};
+  }
+  ~LocalForm() { NM_free(matrix_); }
+  LocalForm(const LocalForm&) = delete;
+  LocalForm& operator=(const LocalForm&) = delete;
+
+  FrictionContactProblem* get() { return &problem_; }
+  double norm_of_q() const {
+    double sum = 0;
+    for (const double value : q_) sum += value * value;
+    return std::sqrt(sum);
+  }
+
+ private:
+  std::vector<double> q_, mu_;
+  NumericsMatrix* matrix_;
+  FrictionContactProblem problem_;
+};
+
+PeerAnswer solve(int solver, Storage storage, const StepProblem& step, std::span<const double> start,
+                 const Settings& settings) {
+  PeerAnswer answer;
+  answer.message = find_siconos_refusal(step);
+  if (!answer.message.empty()) return answer;
+  LocalForm form(step, storage);
+  const std::unique_ptr<SolverOptions, DeleteOptions> options(solver_options_create(solver));
+  options->dparam[SICONOS_DPARAM_TOL] = settings.number(parameters::peer_tolerance().name);
+  options->iparam[SICONOS_IPARAM_MAX_ITER] = settings.integer(parameters::peer_iterations().name);
+  answer.impulse.assign(start.begin(), start.end());
+  std::vector<double> velocity(start.size(), 0.0);
+  Stopwatch watch;
+  const int info = fc3d_driver(form.get(), answer.impulse.data(), velocity.data(), options.get());
+  answer.solve_ms = watch.lap_ms();
+  answer.claims_success = info == 0;
+  if (info != 0) answer.message = "Siconos's fc3d_driver returned " + std::to_string(info);
+  answer.iterations = options->iparam[SICONOS_IPARAM_ITER_DONE];
+  return answer;
+}
+
+}  // namespace
+
+std::string find_siconos_refusal(const StepProblem& problem) {
+  for (int r = 0; r < problem.row_count(); ++r) {
+    const int place = r % kDimension;
+    const bool fits = place == 0
+                          ? problem.row_kind[r] == RowKind::normal
+                          : problem.row_kind[r] == RowKind::friction && problem.friction_row[r] == r - place;
+    if (!fits || problem.row_count() % kDimension != 0)
+      return "Siconos takes nothing but contacts of a normal row and two friction rows; row " +
+             std::to_string(r) + " is none of them, or the last contact has not all three";
+  }
+  return problem.row_count() == 0 ? "there are no contacts" : "";
+}
+
+double siconos_error(const StepProblem& problem, std::span<const double> impulse) {
+  if (const std::string refusal = find_siconos_refusal(problem); !refusal.empty())
+    throw std::invalid_argument(refusal);
+  LocalForm form(problem, Storage::triplets);
+  const std::unique_ptr<SolverOptions, DeleteOptions> options(
+      solver_options_create(SICONOS_FRICTION_3D_NSGS));
+  std::vector<double> reaction(impulse.begin(), impulse.end()), velocity(impulse.size(), 0.0);
+  double error = 0;
+  const double norm = form.norm_of_q();
+  fc3d_compute_error(form.get(), reaction.data(), velocity.data(), 1.0, options.get(), norm > 0 ? norm : 1.0,
+                     &error);
+  return error;
+}
+
+PeerAnswer solve_siconos_nsgs(const StepProblem& problem, std::span<const double> start,
+                              const Settings& settings) {
+  return solve(SICONOS_FRICTION_3D_NSGS, Storage::blocks, problem, start, settings);
+}
+
+PeerAnswer solve_siconos_newton(const StepProblem& problem, std::span<const double> start,
+                                const Settings& settings) {
+  return solve(SICONOS_FRICTION_3D_NSN_AC, Storage::triplets, problem, start, settings);
+}
+
+}  // namespace cleave

@@ -1,0 +1,53 @@
+#include "harness/peers/siconos_command.h"
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+
+#include "harness/base/numbers.h"
+#include "harness/files/problem_file.h"
+#include "harness/peers/siconos.h"
+#include "solver/residual.h"
+
+namespace cleave {
+namespace {
+
+double largest_difference(std::span<const double> a, std::span<const double> b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
+  return largest;
+}
+
+// One line a stored solution. Velocities are compared with those of the first one, as names sort.
+void print_solutions(const std::string& path) {
+  const ProblemFile file = read_problem_file_aloud(path);
+  if (file.solutions.empty())
+    throw std::invalid_argument(path +
+                                ": no solution in it; cleave_peers replay --write-solutions stores them");
+  if (const std::string refusal = find_siconos_refusal(file.problem); !refusal.empty())
+    throw std::invalid_argument(path + ": " + refusal);
+  const StoredSolution& first = file.solutions.begin()->second;
+  for (const auto& [label, solution] : file.solutions)
+    std::printf("%s,%s,%d,%s,%s,%s\n", path.c_str(), solution.solver.c_str(), file.problem.row_count(),
+                number_text(judge(file.problem, solution.impulse).residual_m_per_s).c_str(),
+                number_text(siconos_error(file.problem, solution.impulse)).c_str(),
+                number_text(largest_difference(solution.velocity, first.velocity)).c_str());
+}
+
+int print_all(const std::vector<std::string>& files) {
+  if (files.empty()) throw std::invalid_argument("FILES: at least one problem file is required");
+  std::puts("file,solver,rows,residual_m_per_s,siconos_error,velocity_difference_m_per_s");
+  for (const std::string& path : files) print_solutions(path);
+  return kExitOk;
+}
+
+}  // namespace
+
+std::function<int()> declare_siconos_error(CLI::App& app, const std::vector<std::string>&) {
+  const auto files = std::make_shared<std::vector<std::string>>();
+  app.add_option("files", *files, "problem files with solutions in them")->type_name("FILES");
+  return [files] { return print_all(*files); };
+}
+
+}  // namespace cleave
