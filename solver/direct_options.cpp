@@ -47,7 +47,7 @@ const Parameter& sweeps() {
                                    .kind = Kind::integer,
                                    .default_value = "5",
                                    .range = {0, kInfinity},
-                                   .help = "Gauss-Seidel sweeps of pgs",
+                                   .help = "Gauss-Seidel sweeps of pgs and pgs-colored",
                                    .source = "Catto 2005"};
   return parameter;
 }

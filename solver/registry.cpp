@@ -147,6 +147,14 @@ std::span<const SolverRow> solver_table() {
        nullptr,
        nullptr,
        make_pgs},
+      {{"pgs-colored",
+        "projected Gauss-Seidel, groups of rows of one colour in parallel",
+        "Fratarcangeli, Tibaldo, Pellacini 2016, with a greedy colouring",
+        {sweeps()}},
+       false,
+       nullptr,
+       nullptr,
+       make_pgs_colored},
   };
   return table;
 }

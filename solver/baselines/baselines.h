@@ -9,5 +9,6 @@
 namespace cleave {
 
 std::unique_ptr<StepSolver> make_pgs(const SolveOptions& options, const Settings& settings);
+std::unique_ptr<StepSolver> make_pgs_colored(const SolveOptions& options, const Settings& settings);
 
 }  // namespace cleave

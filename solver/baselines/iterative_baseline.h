@@ -21,6 +21,7 @@ class IterativeBaseline : public StepSolver {
  protected:
   // For iterate() to look at, once an iteration (check_stop).
   const std::atomic<bool>* stop() const { return stop_; }
+  StageClock& clock() { return clock_; }
 
  private:
   // Improves solution.impulse (m), the warm start at first, and solution.velocity = v0 + M^-1 J^T impulse. Returns the

@@ -51,7 +51,7 @@ std::string refusal(const std::string& text) {
 }
 
 TEST(SolverRegistryTest, ParametersOfOthersAndBadValuesAreRefusedByName) {
-  EXPECT_NE(refusal("schur@sweeps=5").find("sweeps is a parameter of pgs; schur has: max-iterations"),
+  EXPECT_NE(refusal("schur@sweeps=5").find("sweeps is a parameter of pgs, pgs-colored; schur has: max-iterations"),
             std::string::npos)
       << refusal("schur@sweeps=5");
   EXPECT_NE(refusal("pgs@predictor-sweeps=5").find("strategy pivot"), std::string::npos);
