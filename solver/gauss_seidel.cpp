@@ -7,13 +7,9 @@ namespace cleave {
 void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double> impulse, std::span<double> v,
                          const std::atomic<bool>* stop) {
   assert(step.set().axes().empty());
-  const StepProblem& problem = step.problem();
-  const auto within_bounds = [&](int r, double old, double w) {
-    return std::clamp(old - w / step.diagonal()[r], problem.lower[r], problem.upper[r]);
-  };
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     check_stop(stop);
-    gauss_seidel_sweep(step, LaneSlack{}, within_bounds, impulse, v);
+    gauss_seidel_sweep(step, LaneSlack{}, WithinBounds{step}, impulse, v);
   }
 }
 

@@ -38,27 +38,40 @@ struct OrderedSlack {
   }
 };
 
-// One sweep with other bounds than fixed ones: next(row, impulse, w) is the new impulse of the row; it may look at the
-// impulses of other rows as they are by then.
+// Visits the rows of one group once, with any bounds: next(row, impulse, w) is the new impulse of the row; it may look at the
+// impulses of other rows as they are by then. Reads and writes the impulses of the group and the velocities of its bodies.
+template <typename Slack, typename Next>
+void gauss_seidel_visit(const PreparedStep& step, const RowGroup& g, const Slack& slack, const Next& next,
+                        std::span<double> impulse, std::span<double> v) {
+  const StepProblem& problem = step.problem();
+  // The velocities of the two bodies stay in registers over the rows of the pair.
+  double u[12] = {};
+  std::copy_n(v.data() + 6 * g.body_a, 6, u);
+  if (g.body_b >= 0) std::copy_n(v.data() + 6 * g.body_b, 6, u + 6);
+  for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
+    const double old = impulse[r];
+    impulse[r] = next(r, old, slack(problem, r, u, old));
+    const double change = impulse[r] - old;
+    const double* mj = step.mass_jacobian().data() + 12 * r;
+    for (int c = 0; c < 12; ++c) u[c] += mj[c] * change;
+  }
+  std::copy_n(u, 6, v.data() + 6 * g.body_a);
+  if (g.body_b >= 0) std::copy_n(u + 6, 6, v.data() + 6 * g.body_b);
+}
+
+// One sweep over all groups.
 template <typename Slack, typename Next>
 void gauss_seidel_sweep(const PreparedStep& step, const Slack& slack, const Next& next,
                         std::span<double> impulse, std::span<double> v) {
-  const StepProblem& problem = step.problem();
-  for (const RowGroup& g : step.groups()) {
-    // The velocities of the two bodies stay in registers over the rows of the pair.
-    double u[12] = {};
-    std::copy_n(v.data() + 6 * g.body_a, 6, u);
-    if (g.body_b >= 0) std::copy_n(v.data() + 6 * g.body_b, 6, u + 6);
-    for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
-      const double old = impulse[r];
-      impulse[r] = next(r, old, slack(problem, r, u, old));
-      const double change = impulse[r] - old;
-      const double* mj = step.mass_jacobian().data() + 12 * r;
-      for (int c = 0; c < 12; ++c) u[c] += mj[c] * change;
-    }
-    std::copy_n(u, 6, v.data() + 6 * g.body_a);
-    if (g.body_b >= 0) std::copy_n(u + 6, 6, v.data() + 6 * g.body_b);
-  }
+  for (const RowGroup& g : step.groups()) gauss_seidel_visit(step, g, slack, next, impulse, v);
 }
+
+// clamp(lambda_r - w_r / d_r, lo_r, hi_r), of a problem without turned boxes.
+struct WithinBounds {
+  const PreparedStep& step;
+  double operator()(int r, double old, double w) const {
+    return std::clamp(old - w / step.diagonal()[r], step.problem().lower[r], step.problem().upper[r]);
+  }
+};
 
 }  // namespace cleave

@@ -13,5 +13,6 @@ std::unique_ptr<StepSolver> make_apgd(const SolveOptions& options, const Setting
 std::unique_ptr<StepSolver> make_jacobi_split(const SolveOptions& options, const Settings& settings);
 std::unique_ptr<StepSolver> make_split_domains(const SolveOptions& options, const Settings& settings);
 std::unique_ptr<StepSolver> make_lemke(const SolveOptions& options, const Settings& settings);
+std::unique_ptr<StepSolver> make_pgs_colored(const SolveOptions& options, const Settings& settings);
 
 }  // namespace cleave
