@@ -11,6 +11,7 @@ struct Column {
   std::string name, help;
   bool machine;  // may differ between two runs of the same experiment
   About about;
+  const char* type;  // integer, number or text
 };
 
 }  // namespace cleave

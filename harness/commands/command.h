@@ -36,6 +36,8 @@ std::function<int()> declare_record(CLI::App& app, const std::vector<std::string
 std::function<int()> declare_replay(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_export(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_calibrate(CLI::App& app, const std::vector<std::string>& argv);
+std::function<int()> declare_collect(CLI::App& app, const std::vector<std::string>& argv);
+std::function<int()> declare_compare(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_verify(CLI::App& app, const std::vector<std::string>& argv);
 
 }  // namespace cleave

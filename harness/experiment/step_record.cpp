@@ -20,14 +20,7 @@ std::string cell_text(ColumnOf of, double value) {
   return std::string(text, std::snprintf(text, sizeof text, "%.17g", value));
 }
 
-std::string quoted_where_needed(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
-
-std::string cell_text(ColumnOf, const std::string& value) { return quoted_where_needed(value); }
+std::string cell_text(ColumnOf, const std::string& value) { return csv_cell(value); }
 std::string cell_text(ColumnOf, int value) { return std::to_string(value); }
 std::string cell_text(ColumnOf, std::uint64_t value) { return std::to_string(value); }
 
@@ -49,7 +42,19 @@ ParameterColumn::Place place_of(const std::string& column) {
   return late_rank(column) > 0 ? ParameterColumn::Place::last : ParameterColumn::Place::among_options;
 }
 
+constexpr const char* type_of(const std::string&) { return "text"; }
+constexpr const char* type_of(double) { return "number"; }
+constexpr const char* type_of(int) { return "integer"; }
+constexpr const char* type_of(std::uint64_t) { return "integer"; }
+
 }  // namespace
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
 
 std::span<const ParameterColumn> parameter_columns() {
   static const std::vector<ParameterColumn> columns = [] {
@@ -138,8 +143,8 @@ std::vector<Column> columns() {
   std::vector<Column> list;
   const StepRecord record;
   visit_fields(record,
-               [&list](std::string_view name, const auto&, const char* help, ColumnOf of, About about) {
-                 list.push_back({std::string(name), help, of == ColumnOf::machine, about});
+               [&list](std::string_view name, const auto& value, const char* help, ColumnOf of, About about) {
+                 list.push_back({std::string(name), help, of == ColumnOf::machine, about, type_of(value)});
                });
   return list;
 }

@@ -309,12 +309,14 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         "share of the same friction rows whose |impulse| is above mu n (1 + 1e-9)");
 }
 
+// A text as a cell: commas, quotes and line ends quoted as RFC 4180 has it.
+std::string csv_cell(const std::string& text);
+
 // "run_id,scene,...\n"
 std::string csv_header();
 
 // One line with its "\n". The machine's numbers are printed in the shortest form that reads back unchanged,
-// other numbers with 17 significant digits; commas, quotes and line ends inside a text are quoted as RFC 4180
-// has it.
+// other numbers with 17 significant digits; texts as csv_cell has them.
 std::string csv_line(const StepRecord& record);
 std::string csv_lines(std::span<const StepRecord> records);
 

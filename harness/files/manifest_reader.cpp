@@ -119,6 +119,9 @@ StoredManifest read_manifest(const std::filesystem::path& path) {
     stored.run_id = manifest.at("run_id");
     stored.steps_schema = manifest.value("steps_schema", "");
     const json nothing = json::object();
+    stored.utc_start = manifest.value("utc_start", "");
+    stored.git_hash = manifest.value("build", nothing).value("git_hash", "");
+    stored.cpu_model = manifest.value("machine", nothing).value("cpu_model", "");
     const json algorithms = manifest.value("algorithms", nothing), result = manifest.value("result", nothing);
     for (const json& algorithm : algorithms) stored.algorithms.push_back(read_algorithm(algorithm));
     for (const auto& [name, value] : result.items())

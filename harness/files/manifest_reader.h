@@ -20,6 +20,7 @@ std::map<std::string, std::string> read_manifest_options(const std::filesystem::
 // All of it that says what the rows of steps.csv have to be.
 struct StoredManifest {
   std::string state, command, run_id;
+  std::string git_hash, cpu_model, utc_start;  // empty: of a program that did not say
   std::string steps_schema;          // empty: of a program that did not say
   std::vector<OptionValue> options;  // name, kind and text, in their order; what is null has an empty text
   std::vector<NamedAlgorithm> algorithms;

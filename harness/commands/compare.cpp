@@ -1,0 +1,178 @@
+// cleave compare: the same cells measured twice, by two builds, on two machines or with two settings.
+//
+// Rows of A and B belong together where all columns of --by and the step are equal; several of one step (rounds) count by their
+// median. A line is a group of --by: the ratio of the medians over the steps that both solved, B over A, and its bootstrap
+// interval. A regression is a group whose whole interval lies above 1 + --allow, or that solved a step in A which B did not.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <stdexcept>
+
+#include "harness/base/hash.h"
+#include "harness/base/names.h"
+#include "harness/base/numbers.h"
+#include "harness/base/printable_text.h"
+#include "harness/base/ratio_interval.h"
+#include "harness/commands/command.h"
+#include "harness/commands/measured_cells.h"
+#include "harness/commands/verify_table.h"
+#include "harness/experiment/step_record.h"
+
+namespace cleave {
+namespace {
+
+struct CompareOptions {
+  std::string a, b;
+  std::string by = "run_id,problem_file,partitioner,refiner,solver,threads";
+  std::string column = "t_s_ms", allow = "0.05";
+};
+
+using Texts = std::vector<std::string>;
+
+// Of one step, over the rounds in which it was solved.
+struct StepValues {
+  std::vector<double> values;
+  bool solved = false;
+  std::string solution_hash;
+};
+using Group = std::map<Texts, StepValues>;  // by seed and step
+using Campaign = std::map<Texts, Group>;    // by the columns of --by
+
+int place_of(const std::string& option, const std::string& name) {
+  static const std::vector<Column> all = columns();
+  check_name(option, name, names_of(std::span(all)));
+  return static_cast<int>(std::ranges::find(all, name, &Column::name) - all.begin());
+}
+
+// NaN for what was not measured.
+double number_in(const std::string& text) {
+  return text == "nan" || text == "-" || text == "-1" ? kUnmeasured : std::strtod(text.c_str(), nullptr);
+}
+
+Campaign read_campaign(const std::string& directory, const std::vector<int>& by, int column) {
+  static const int seed = place_of("", "seed"), step = place_of("", "step"), status = place_of("", "status"),
+                   hash = place_of("", "solution_hash");
+  Campaign campaign;
+  for (const MeasuredCell& cell : find_measured_cells(std::span(&directory, 1)))
+    visit_rows(cell, [&](const std::string& line) {
+      const Texts cells = split_csv_line(line);
+      Texts key;
+      for (const int place : by) key.push_back(cells[place]);
+      StepValues& found = campaign[key][{cells[seed], cells[step]}];
+      if (cells[status] != "ok") return;
+      found.solved = true;
+      found.solution_hash = cells[hash];
+      const double value = number_in(cells[column]);
+      if (std::isfinite(value)) found.values.push_back(value);
+    });
+  return campaign;
+}
+
+double median_of(std::vector<double> values) {
+  std::ranges::sort(values);
+  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
+}
+
+// What became of one group.
+struct Comparison {
+  std::vector<double> a, b;  // of the steps that both measured
+  int lost = 0;              // steps that A solved and B did not
+  int other_solutions = 0;   // of those that both solved
+};
+
+Comparison compared(const Group& a, const Group& b) {
+  Comparison result;
+  for (const auto& [step, of_a] : a) {
+    const auto found = b.find(step);
+    if (!of_a.solved || found == b.end()) continue;
+    const StepValues& of_b = found->second;
+    result.lost += !of_b.solved;
+    if (!of_b.solved) continue;
+    result.other_solutions += of_a.solution_hash != of_b.solution_hash;
+    if (of_a.values.empty() || of_b.values.empty()) continue;
+    result.a.push_back(median_of(of_a.values));
+    result.b.push_back(median_of(of_b.values));
+  }
+  return result;
+}
+
+// The same draws for the same group.
+std::uint64_t seed_of(const Texts& key) {
+  Fnv1a64 hash;
+  for (const std::string& cell : key) hash.add(std::string_view(cell));
+  return hash.value();
+}
+
+const char* verdict_of(const RatioInterval& interval) {
+  if (std::isnan(interval.ratio)) return "undecided";  // nothing in common, or both are 0
+  if (std::isnan(interval.low)) return "too-few-steps";
+  return interval.low > 1 ? "slower" : interval.high < 1 ? "faster" : "same";
+}
+
+// Prints the line of a group. True where it is a regression.
+bool print_group(const Texts& key, const Comparison& group, double allow) {
+  RatioInterval interval{kUnmeasured, kUnmeasured, kUnmeasured};
+  double a = kUnmeasured, b = kUnmeasured;
+  if (!group.a.empty()) {
+    interval = ratio_interval(group.a, group.b, seed_of(key));
+    a = median_of(group.a), b = median_of(group.b);
+  }
+  std::string line;
+  for (const std::string& cell : key) line += csv_cell(cell) + ",";
+  line += std::to_string(group.a.size()) + "," + std::to_string(group.lost) + "," +
+          std::to_string(group.other_solutions);
+  for (const double value : {a, b, interval.ratio, interval.low, interval.high})
+    line += "," + number_text(value);
+  std::printf("%s,%s\n", line.c_str(), group.lost > 0 ? "lost" : verdict_of(interval));
+  return group.lost > 0 || interval.low > 1 + allow;
+}
+
+int compare(const CompareOptions& options) {
+  if (options.a.empty() || options.b.empty())
+    throw std::invalid_argument("A, B: two directories with output directories are required");
+  const double allow = parse_number("--allow", options.allow, {0, 1e6});
+  const int column = place_of("--column", options.column);
+  if (std::string_view(columns()[column].type) == "text")
+    throw std::invalid_argument("--column: " + options.column +
+                                " holds text; allowed is a column of numbers");
+  std::vector<int> by;
+  const Texts names = split_list(options.by);
+  for (const std::string& name : names) by.push_back(place_of("--by", name));
+  const Campaign a = read_campaign(options.a, by, column), b = read_campaign(options.b, by, column);
+  std::printf("%s,steps,lost,other_solutions,a,b,ratio,low,high,verdict\n", joined(names, ",").c_str());
+  int groups = 0, regressions = 0;
+  for (const auto& [key, group] : a) {
+    if (!b.contains(key)) continue;
+    ++groups;
+    regressions += print_group(key, compared(group, b.at(key)), allow);
+  }
+  std::fflush(stdout);
+  const auto only = [](const Campaign& one, const Campaign& other) {
+    return std::ranges::count_if(one, [&](const auto& entry) { return !other.contains(entry.first); });
+  };
+  say(std::to_string(groups) + " groups in both, " + std::to_string(only(a, b)) + " in A alone, " +
+      std::to_string(only(b, a)) + " in B alone; " + std::to_string(regressions) + " regressions");
+  if (groups == 0)
+    throw std::invalid_argument("--by: no group of " + options.by + " is in both; name fewer columns");
+  return regressions > 0 ? kExitVerifyFailed : kExitOk;
+}
+
+}  // namespace
+
+std::function<int()> declare_compare(CLI::App& app, const std::vector<std::string>&) {
+  const auto options = std::make_shared<CompareOptions>();
+  app.add_option("a", options->a, "output directory, or directory that holds such")->type_name("A");
+  app.add_option("b", options->b, "the other")->type_name("B");
+  app.add_option("--by", options->by, "columns that rows of a group have in common")
+      ->type_name("COLUMNS")
+      ->capture_default_str();
+  app.add_option("--column", options->column, "what is compared")->type_name("NAME")->capture_default_str();
+  app.add_option("--allow", options->allow, "a regression is slower by more than this share")
+      ->type_name("X")
+      ->capture_default_str();
+  return [options] { return compare(*options); };
+}
+
+}  // namespace cleave

@@ -1,0 +1,65 @@
+#include "harness/commands/measured_cells.h"
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <stdexcept>
+
+#include "harness/experiment/step_record.h"
+#include "harness/files/manifest.h"
+
+namespace cleave {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kStepsFile = "steps.csv";
+
+bool is_cell(const fs::path& directory) {
+  return fs::is_regular_file(directory / kManifestFile) && fs::is_regular_file(directory / kStepsFile);
+}
+
+std::vector<fs::path> cells_below(const fs::path& root) {
+  std::vector<fs::path> found;
+  if (is_cell(root)) found.push_back(root);
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root))
+    if (entry.is_directory() && !entry.is_symlink() && is_cell(entry.path())) found.push_back(entry.path());
+  std::ranges::sort(found);
+  return found;
+}
+
+}  // namespace
+
+std::vector<MeasuredCell> find_measured_cells(std::span<const std::string> directories) {
+  std::vector<MeasuredCell> cells;
+  std::set<fs::path> known;
+  for (const std::string& text : directories) {
+    if (!fs::is_directory(text)) throw std::invalid_argument(text + ": is no directory");
+    const std::vector<fs::path> found = cells_below(fs::path(text).lexically_normal());
+    if (found.empty())
+      throw std::invalid_argument(text + ": holds no output directory (manifest.json beside steps.csv)");
+    for (const fs::path& directory : found) {
+      if (!known.insert(fs::canonical(directory)).second)
+        throw std::invalid_argument(directory.string() + ": is asked for twice");
+      cells.push_back({directory.string(), directory, read_manifest(directory / kManifestFile)});
+    }
+  }
+  return cells;
+}
+
+bool visit_rows(const MeasuredCell& cell, const std::function<void(const std::string& line)>& visit) {
+  static const std::string header = csv_header();
+  const fs::path path = cell.directory / kStepsFile;
+  std::ifstream file(path, std::ios::binary);
+  std::string line;
+  if (!std::getline(file, line) || line + "\n" != header)
+    throw std::invalid_argument(path.string() + ": its columns are not those of " + kStepsSchema +
+                                "; was it written by another version?");
+  while (std::getline(file, line)) {
+    if (file.eof()) return false;
+    visit(line);
+  }
+  return true;
+}
+
+}  // namespace cleave

@@ -1,0 +1,30 @@
+// The cells of a campaign: every output directory at or below a directory, with the rows it measured.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "harness/files/manifest_reader.h"
+
+namespace cleave {
+
+struct MeasuredCell {
+  std::string name;  // its path, beginning with the directory that was asked for
+  std::filesystem::path directory;
+  StoredManifest manifest;
+};
+
+// What tells an output directory: a manifest.json beside a steps.csv. By directory asked for, then by name; links to
+// directories are not followed. Throws std::invalid_argument with one line naming what is wrong: a directory that is none or
+// holds no cell, one that is asked for twice, a manifest that cannot be read.
+std::vector<MeasuredCell> find_measured_cells(std::span<const std::string> directories);
+
+// Calls visit(line, without its end) for every row of the cell's steps.csv. Whatever the run did not come to write whole is
+// left out: returns false then. Throws std::invalid_argument naming the file where its columns are not those that
+// this program writes.
+bool visit_rows(const MeasuredCell& cell, const std::function<void(const std::string& line)>& visit);
+
+}  // namespace cleave

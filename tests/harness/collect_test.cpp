@@ -1,0 +1,179 @@
+// cleave collect and cleave compare on the output directories of real runs.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <numeric>
+
+#include "harness/base/ratio_interval.h"
+#include "tests/harness/run_program.h"
+
+namespace cleave {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Replaces the texts that `change` says in every row of a steps.csv.
+void edit_rows(const fs::path& path, const std::function<void(CsvTable&)>& change) {
+  CsvTable table = read_csv(path);
+  change(table);
+  std::ofstream file(path, std::ios::binary);
+  const auto write = [&file](const std::vector<std::string>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) file << (i == 0 ? "" : ",") << cells[i];
+    file << "\n";
+  };
+  write(table.header);
+  for (const std::vector<std::string>& row : table.rows) write(row);
+}
+
+void set_column(CsvTable& table, const std::string& column, const std::function<std::string(int row)>& text) {
+  const auto place = std::ranges::find(table.header, column) - table.header.begin();
+  for (std::size_t row = 0; row < table.rows.size(); ++row) table.rows[row][place] = text(row);
+}
+
+class Campaigns : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const char* seed : {"1", "2"})
+      ASSERT_EQ(
+          run_cleave({"run", "--scene", "rock_pile", "--bodies", "8", "--steps", "24", "--measure-every", "4",
+                      "--seed", seed, "--partitioner", "mindp,mix", "--refiner", "none", "--repeats", "1",
+                      "--out", directory_.path() / "a" / ("cell" + std::string(seed))})
+              .exit_code,
+          0);
+    fs::copy(directory_ / "a", directory_ / "b", fs::copy_options::recursive);
+    // Times that a test can tell: 10, 11, ... ms.
+    for (const char* campaign : {"a", "b"})
+      for (const char* cell : {"cell1", "cell2"})
+        edit_rows(steps(campaign, cell), [](CsvTable& table) {
+          set_column(table, "t_s_ms", [](int row) { return std::to_string(10 + row); });
+        });
+  }
+
+  fs::path steps(const std::string& campaign, const std::string& cell) const {
+    return directory_ / campaign / cell / "steps.csv";
+  }
+  ProgramResult compare(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"compare", directory_ / "a", directory_ / "b"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_cleave(words);
+  }
+
+  TemporaryDirectory directory_;
+};
+
+TEST_F(Campaigns, AreCollectedIntoOneTable) {
+  const ProgramResult result = run_cleave({"collect", directory_ / "a", "--out", directory_ / "all.csv"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const CsvTable table = read_csv(directory_ / "all.csv"), first = read_csv(steps("a", "cell1"));
+  ASSERT_EQ(table.rows.size(), 24u);  // 2 cells of 6 steps and 2 combinations
+  EXPECT_EQ(table.header.size(), first.header.size() + 2);
+  for (std::size_t row = 0; row < first.rows.size(); ++row)
+    for (const std::string& column : first.header) EXPECT_EQ(table.at(row, column), first.at(row, column));
+  const CsvTable cells = read_csv(directory_ / "all.cells.csv");
+  ASSERT_EQ(cells.rows.size(), 2u);
+  EXPECT_EQ(cells.at(1, "cell"), table.at(23, "cell"));
+  EXPECT_EQ(cells.at(1, "option_seed"), "2");
+  EXPECT_EQ(cells.at(1, "rows"), "12");
+  EXPECT_EQ(cells.at(1, "run_id"), table.at(23, "run_id"));
+  EXPECT_EQ(cells.at(1, "state"), "complete");
+  EXPECT_EQ(count_lines(read_text(directory_ / "all.columns.csv")),
+            static_cast<int>(table.header.size()) + 1);
+  EXPECT_EQ(run_cleave({"collect", directory_ / "a", "--out", directory_ / "all.csv"}).exit_code, 1);
+}
+
+TEST_F(Campaigns, WhatWasNotWrittenWholeIsLeftOutAndSaid) {
+  const std::string text = read_text(steps("a", "cell2"));
+  std::ofstream(steps("a", "cell2"), std::ios::binary) << text.substr(0, text.size() - 5);
+  const ProgramResult result = run_cleave({"collect", directory_ / "a", "--out", directory_ / "all.csv"});
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_NE(result.err.find("23 rows of 2 output directories, 1 of them incomplete"), std::string::npos)
+      << result.err;
+}
+
+TEST_F(Campaigns, OfOtherColumnsAreRefusedByName) {
+  edit_rows(steps("a", "cell2"), [](CsvTable& table) { table.header.back() = "other"; });
+  const ProgramResult result = run_cleave({"collect", directory_ / "a", "--out", directory_ / "all.csv"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("cell2/steps.csv: its columns are not those of"), std::string::npos)
+      << result.err;
+  EXPECT_FALSE(fs::exists(directory_ / "all.csv"));
+}
+
+TEST_F(Campaigns, ThatAreTheSameCompareAsSuch) {
+  const ProgramResult result = compare();
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const CsvTable table = parse_csv(result.out);
+  ASSERT_EQ(table.rows.size(), 4u);
+  for (std::size_t row = 0; row < 4; ++row) {
+    EXPECT_EQ(table.at(row, "verdict"), "same");
+    EXPECT_EQ(table.at(row, "ratio"), "1");
+    EXPECT_EQ(table.at(row, "steps"), "6");
+  }
+}
+
+TEST_F(Campaigns, SlowerAndFasterGroupsAreToldAndSlowerOnesFail) {
+  const auto scale = [&](const std::string& cell, double factor) {
+    edit_rows(steps("b", cell), [factor](CsvTable& table) {
+      set_column(table, "t_s_ms", [&](int row) { return std::to_string(factor * (10 + row)); });
+    });
+  };
+  scale("cell1", 0.5);
+  EXPECT_EQ(compare().exit_code, 0);
+  scale("cell2", 1.2);
+  const ProgramResult result = compare();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.err.find("2 regressions"), std::string::npos) << result.err;
+  const std::vector<std::string> verdicts = parse_csv(result.out).column("verdict");
+  EXPECT_EQ(std::ranges::count(verdicts, "slower"), 2);
+  EXPECT_EQ(std::ranges::count(verdicts, "faster"), 2);
+  EXPECT_EQ(compare({"--allow", "0.3"}).exit_code, 0);
+}
+
+TEST_F(Campaigns, AStepThatWasSolvedAndIsNoMoreFails) {
+  edit_rows(steps("b", "cell1"), [](CsvTable& table) {
+    set_column(table, "status", [](int row) { return row == 4 ? "not_converged" : "ok"; });
+  });
+  const ProgramResult result = compare();
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.out.find(",5,1,0,"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find(",lost\n"), std::string::npos) << result.out;
+}
+
+TEST_F(Campaigns, AreComparedByOtherColumnsAndNames) {
+  const ProgramResult result = compare({"--by", "partitioner", "--column", "interface_rows"});
+  EXPECT_EQ(parse_csv(result.out).column("partitioner"), (std::vector<std::string>{"mindp", "mix"}));
+  EXPECT_NE(compare({"--by", "partitionr"}).err.find("did you mean 'partitioner'?"), std::string::npos);
+  EXPECT_NE(compare({"--column", "status"}).err.find("holds text"), std::string::npos);
+  EXPECT_NE(compare({"--allow", "-1"}).err.find("--allow: -1 is not in"), std::string::npos);
+  EXPECT_EQ(run_cleave({"compare", directory_ / "a"}).exit_code, 1);
+  EXPECT_EQ(run_cleave({"collect", directory_.path() / "none", "--out", directory_ / "x.csv"}).exit_code, 1);
+}
+
+TEST(RatioInterval, HoldsTheRatioAndIsOfItsPairs) {
+  std::vector<double> a(40), b(40);
+  std::iota(a.begin(), a.end(), 100.0);
+  for (std::size_t i = 0; i < a.size(); ++i) b[i] = 1.1 * a[i];
+  const RatioInterval exact = ratio_interval(a, b, 1);  // what both have in common drops out
+  EXPECT_NEAR(exact.ratio, 1.1, 1e-12);
+  EXPECT_NEAR(exact.high - exact.low, 0, 1e-12);
+  for (std::size_t i = 0; i < a.size(); ++i) b[i] = a[i] * (i % 2 == 0 ? 0.5 : 2);
+  const RatioInterval wide = ratio_interval(a, b, 1);
+  EXPECT_LT(wide.low, 0.9);
+  EXPECT_GT(wide.high, 1.1);
+  EXPECT_LE(wide.low, wide.ratio);
+  EXPECT_GE(wide.high, wide.ratio);
+}
+
+// An even number, by hand; four pairs are too few.
+TEST(RatioInterval, IsOfMedians) {
+  const std::vector<double> a = {1, 2, 3, 100}, b = {4, 6, 1, 1000};
+  const RatioInterval few = ratio_interval(a, b, 1);
+  EXPECT_DOUBLE_EQ(few.ratio, 5 / 2.5);
+  EXPECT_TRUE(std::isnan(few.low) && std::isnan(few.high));
+}
+
+}  // namespace
+}  // namespace cleave
