@@ -36,6 +36,9 @@ constexpr std::string_view kLate[] = {"partition_seed",  "trials",      "karger_
                                       "scotch_strategy", "effort",      "patience",      "merge_small",
                                       "split",           "calibration", "cost_kernel",   "cost_threads"};
 
+// Behind them came other columns too.
+constexpr std::string_view kNewest = "restart";
+
 // 0 for all that are not late.
 std::ptrdiff_t late_rank(const std::string& column) {
   const auto found = std::ranges::find(kLate, column);
@@ -45,6 +48,7 @@ std::ptrdiff_t late_rank(const std::string& column) {
 ParameterColumn::Place place_of(const std::string& column) {
   static const std::set<std::string> first = {"max_bodies", "tau_mr", "tau_mix", "max_growth"};
   if (first.contains(column)) return ParameterColumn::Place::first;
+  if (column == kNewest) return ParameterColumn::Place::newest;
   return late_rank(column) > 0 ? ParameterColumn::Place::last : ParameterColumn::Place::among_options;
 }
 

@@ -37,7 +37,7 @@ inline constexpr const char* kStepsSchema = "cleave-steps-4";
 // A column of a parameter of algorithms (algorithms.h). Those of the first tables stand first; some came when
 // there were others behind them, and stand last.
 struct ParameterColumn {
-  enum class Place { first, among_options, last };
+  enum class Place { first, among_options, last, newest };
 
   std::string name, help;
   About about;
@@ -114,6 +114,7 @@ struct StepRecord {
   std::string schema_version = kStepsSchema;
   double factor_predicted_mb = kUnmeasured;
   std::string auto_choice = "-";
+  std::string body_order = "-";
 
   std::string parameter(const std::string& column) const {
     const auto found = parameters.find(column);
@@ -301,6 +302,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         "fresh, repaired or kept: where the parts of the step come from");
   visit("auto_choice", r.auto_choice,
         "partitioner+refiner/kernel that the partitioner auto chose, the kernel being that of the model");
+  visit_parameters(ParameterColumn::Place::newest);
+  visit("body_order", r.body_order, "numbers by which bodies are split, as given", About::partition);
 }
 
 // "run_id,scene,...\n"
