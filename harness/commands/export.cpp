@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <sstream>
 #include <stdexcept>
@@ -23,7 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportOptions {
-  std::string file, format, matrix, out;
+  std::string file, format, out;
+  std::optional<std::string> matrix;
   bool force = false;
 };
 
@@ -62,12 +64,12 @@ constexpr ExportFormat kFormats[] = {
 // A matrix is asked for where one is written, and nowhere else.
 void check_matrix(const ExportOptions& options, const ExportFormat& format) {
   const std::vector<std::string> names = names_of(matrices_of_problem());
-  if (!format.has_matrix && !options.matrix.empty())
+  if (!format.has_matrix && options.matrix)
     throw std::invalid_argument("--matrix: --format " + std::string(format.name) + " has none; leave it out");
-  if (format.has_matrix && options.matrix.empty())
+  if (format.has_matrix && !options.matrix)
     throw std::invalid_argument("--matrix: is required with --format " + std::string(format.name) +
                                 "; choices: " + joined(names));
-  if (format.has_matrix) check_name("--matrix", options.matrix, names);
+  if (format.has_matrix) check_name("--matrix", *options.matrix, names);
 }
 
 const ExportFormat& read_format(const ExportOptions& options) {
