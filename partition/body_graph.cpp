@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "partition/refuse.h"
 
@@ -152,6 +153,31 @@ std::vector<BodyGraph> BodyGraph::induced(std::span<const int> set_of_body, int 
     if (has_groups()) graph.group_.push_back(group(i));
   }
   return graphs;
+}
+
+BodyGraph BodyGraph::renumbered(std::span<const int> number_of_body) const {
+  const int n = body_count();
+  std::vector<int> body_of_number(n);
+  for (int i = 0; i < n; ++i) body_of_number[number_of_body[i]] = i;
+  BodyGraph graph;
+  graph.step_ = step_;
+  std::vector<std::pair<int, int>> half_edges;  // neighbour's number, position here
+  for (const int body : body_of_number) {
+    half_edges.clear();
+    for (int k = first_[body]; k < first_[body + 1]; ++k)
+      half_edges.emplace_back(number_of_body[neighbour_[k]], k);
+    std::ranges::sort(half_edges);
+    for (const auto& [neighbour, k] : half_edges) {
+      graph.neighbour_.push_back(neighbour);
+      graph.constraints_.push_back(constraints_[k]);
+      graph.rows_.push_back(rows_[k]);
+    }
+    graph.add_body(mass_kg_[body], fixed_rows_[body]);
+    if (has_positions())
+      for (const int axis : {0, 1, 2}) graph.position_m_.push_back(position_m(body, axis));
+    if (has_groups()) graph.group_.push_back(group(body));
+  }
+  return graph;
 }
 
 namespace {

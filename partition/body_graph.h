@@ -78,6 +78,9 @@ class BodyGraph {
   // body in ascending order of those whose set is s. set_of_body: (n) 0..sets-1, or -1 for bodies in none.
   std::vector<BodyGraph> induced(std::span<const int> set_of_body, int sets) const;
 
+  // The same graph with other numbers for its bodies. number_of_body: (n) 0..n-1, each once.
+  BodyGraph renumbered(std::span<const int> number_of_body) const;
+
  private:
   void add_body(double mass_kg, int fixed_rows);
 

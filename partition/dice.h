@@ -4,7 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <numeric>
 #include <random>
+#include <utility>
+#include <vector>
 
 namespace cleave {
 
@@ -24,5 +27,13 @@ class Dice {
  private:
   std::mt19937_64 engine_;
 };
+
+// 0 to count - 1, every order equally likely (Fisher & Yates 1938, Durstenfeld 1964).
+inline std::vector<int> shuffled(int count, Dice dice) {
+  std::vector<int> order(count);
+  std::iota(order.begin(), order.end(), 0);
+  for (int last = count - 1; last > 0; --last) std::swap(order[last], order[dice.below(last + 1ull)]);
+  return order;
+}
 
 }  // namespace cleave

@@ -43,6 +43,13 @@ class PartFiles {
   // The file of a step, or nullptr. Of one file for all the step does not matter.
   const PartFile* find(std::optional<int> step) const;
 
+  // Calls visitor(const PartFile&) for every file, in the order of steps.
+  template <class Visitor>
+  void visit(Visitor&& visitor) const {
+    if (for_all_) visitor(*for_all_);
+    for (const auto& [step, file] : by_step_) visitor(file);
+  }
+
   const std::string& pattern() const { return pattern_; }
 
  private:

@@ -1,12 +1,11 @@
-// random: bodies dealt at random, as a control that every partitioner must beat. The bodies are shuffled (Fisher &
-// Yates 1938, Durstenfeld 1964) and dealt in turn to
+// random: bodies dealt at random, as a control that every partitioner must beat. The bodies are shuffled
+// (dice.h) and dealt in turn to
 //
 //     k = ceil(n / max-bodies)
 //
 // parts, so that sizes differ by one at most.
 #include <memory>
-#include <numeric>
-#include <utility>
+#include <vector>
 
 #include "harness/base/parameter.h"
 #include "partition/dice.h"
@@ -14,13 +13,6 @@
 
 namespace cleave {
 namespace {
-
-std::vector<int> shuffled_bodies(int bodies, Dice dice) {
-  std::vector<int> order(bodies);
-  std::iota(order.begin(), order.end(), 0);
-  for (int last = bodies - 1; last > 0; --last) std::swap(order[last], order[dice.below(last + 1ull)]);
-  return order;
-}
 
 class Random final : public Partitioner {
  public:
@@ -31,7 +23,7 @@ class Random final : public Partitioner {
   Partition do_run(const BodyGraph& graph) const override {
     const int n = graph.body_count();
     const int parts = wanted_parts(n, max_bodies_);
-    const std::vector<int> order = shuffled_bodies(n, Dice(seed_));
+    const std::vector<int> order = shuffled(n, Dice(seed_));
     std::vector<int> label_of_body(n);
     for (int place = 0; place < n; ++place) label_of_body[order[place]] = place % parts;
     return numbered_by_lowest_body(label_of_body);

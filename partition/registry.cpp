@@ -104,7 +104,20 @@ std::span<const PartitionerEntry> partitioners() {
        kGrown,
        true,
        make_maxdp},
-      {{"bfs", "grow breadth first", kGrowing, {max_bodies(), merge_small()}}, kGrown, true, make_bfs},
+      {{"bfs",
+        "grow breadth first",
+        kGrowing,
+        {max_bodies(),
+         {.name = "restart",
+          .kind = Parameter::Kind::word,
+          .default_value = "part",
+          .words = {"part", "graph"},
+          .help = "search anew for each part, or chop one order of the whole graph",
+          .source = "partition/README.md"},
+         merge_small()}},
+       kGrown,
+       true,
+       make_bfs},
       {{"mr",
         "grow by bodies whose mass ratio stays below tau-mr",
         kGrowing,
@@ -274,6 +287,16 @@ std::span<const RefinerEntry> refiners() {
   return table;
 }
 
+namespace {
+
+// Of parts that are cut from one order of all bodies only the size is known.
+PartsPromise promise_of(const PartitionerEntry& entry, const Settings& settings) {
+  const bool is_chopped = settings.has("restart") && settings.text("restart") == "graph";
+  return is_chopped ? PartsPromise{.at_most_max_bodies = true} : entry.promise;
+}
+
+}  // namespace
+
 std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm) {
   const PartitionerEntry& entry = find_row(partitioners(), "partitioner", algorithm.name);
   check_available("partitioner", entry);
@@ -283,10 +306,11 @@ std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm) {
   if (settings.has("max-bodies")) max_bodies = settings.integer("max-bodies");
   if (max_bodies && settings.has("max-growth"))
     grown_bodies = most_grown_bodies(*max_bodies, settings.number("max-growth"));
-  made->promise(entry.promise, max_bodies, grown_bodies);
+  const PartsPromise promise = promise_of(entry, settings);
+  made->promise(promise, max_bodies, grown_bodies);
   if (!settings.has("merge-small") || !settings.flag("merge-small")) return made;
   made = merge_small(std::move(made), *max_bodies);
-  made->promise({.contiguous = entry.promise.contiguous, .at_most_grown_bodies = true}, max_bodies,
+  made->promise({.contiguous = promise.contiguous, .at_most_grown_bodies = true}, max_bodies,
                 most_merged_bodies(*max_bodies));
   return made;
 }

@@ -8,7 +8,7 @@ std::span<const Command> commands() {
       {"run", "simulate a scene and measure every combination on it", declare_run},
       {"record", "simulate a scene and write the problems of chosen steps to files", declare_record},
       {"replay", "solve recorded problems with every combination", declare_replay},
-      {"export", "write the body graph of a recorded problem for other programs", declare_export},
+      {"export", "write the body graph or a matrix of a recorded problem for other programs", declare_export},
       {"collect", "put the rows of many output directories into one table", declare_collect},
       {"compare", "hold the times of two campaigns against each other, cell by cell", declare_compare},
       {"calibrate", "fit the cost model of partitions to this machine", declare_calibrate},

@@ -95,6 +95,8 @@ ExpectedRows::ExpectedRows(const StoredManifest& manifest) {
   common_.session = flag_of(manifest, "session");
   common_.repartition = manifest.option("repartition");
   if (common_.repartition.empty()) common_.repartition = Repartition().text;  // record has no such option
+  common_.body_order = manifest.option("body-order");
+  if (common_.body_order.empty()) common_.body_order = BodyOrder().text;  // nor this one
   separate_ = common_.mode == "separate";
   add_combinations(manifest);
   if (is_replay_) {

@@ -14,6 +14,7 @@ constexpr const char* kSkipSmallIslands = "skip_small_islands";
 constexpr const char* kArity = "arity";
 constexpr const char* kOrigin = "partition_origin";
 constexpr const char* kChoice = "auto_choice";
+constexpr const char* kBodyOrder = "body_order";
 constexpr const char* kOfRefiner = "refiner_";
 constexpr Range kArities{2, std::numeric_limits<double>::infinity()};
 
@@ -70,6 +71,8 @@ StoredPartition stored_partition(const SplitSetup& setup, std::vector<int> part_
     stored.parameters.push_back({kArity, Parameter::Kind::integer, std::to_string(*setup.arity)});
   if (origin != PartitionOrigin::fresh)
     stored.parameters.push_back({kOrigin, Parameter::Kind::word, to_string(origin)});
+  if (setup.order.kind != BodyOrder::Kind::scene)
+    stored.parameters.push_back({kBodyOrder, Parameter::Kind::word, setup.order.text});
   if (!setup.choice.empty()) stored.parameters.push_back({kChoice, Parameter::Kind::word, setup.choice});
   return stored;
 }
@@ -88,11 +91,19 @@ Algorithm read_stored_refiner(const StoredPartition& partition) {
   return read_stored(partition, "refiner", partition.refiner, kOfRefiner);
 }
 
+bool has_order_of_file(const StoredPartition& partition) {
+  const StoredParameter* stored = find_stored(partition, kBodyOrder);
+  return stored != nullptr && stored->text.starts_with("file@");
+}
+
 SplitSetup read_split_setup(const StoredPartition& partition) {
   SplitSetup setup{read_stored(partition, "partitioner", partition.partitioner, ""),
                    read_stored_refiner(partition)};
   const StoredParameter* skip = find_stored(partition, kSkipSmallIslands);
   setup.skip_small_islands = skip != nullptr && skip->text == "true";
+  if (has_order_of_file(partition)) throw std::invalid_argument("the file of its body order is not here");
+  if (const StoredParameter* order = find_stored(partition, kBodyOrder))
+    setup.order = read_body_order(kBodyOrder, order->text);
   if (const StoredParameter* choice = find_stored(partition, kChoice)) setup.choice = choice->text;
   if (const StoredParameter* arity = find_stored(partition, kArity))
     setup.arity = static_cast<int>(parse_integer("--arity", arity->text, kArities));

@@ -16,7 +16,10 @@ StoredPartition stored_partition(const SplitSetup& setup, std::vector<int> part_
 // Throws std::invalid_argument for a word that is none.
 PartitionOrigin read_origin(const StoredPartition& partition);
 
-// Throws std::invalid_argument with one line: an algorithm that is none of ours, a parameter that is missing,
+// Whether bodies were numbered by a file, without which nobody can split them again.
+bool has_order_of_file(const StoredPartition& partition);
+
+// Throws std::invalid_argument with one line: a body order that was a file's, an algorithm that is none of ours, a parameter that is missing,
 // of another type or outside its range.
 SplitSetup read_split_setup(const StoredPartition& partition);
 

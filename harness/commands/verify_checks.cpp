@@ -109,6 +109,9 @@ void check_split(const ProblemFile& file, const StoredPartition& partition, cons
   if (check_history(partition, counted, subject, list)) return;
   if (content_of("partitioner", algorithm_name(partition.partitioner)) != nullptr)
     return check_outside_parts(partition, counted, subject, list);
+  if (has_order_of_file(partition))
+    return CheckList::note(
+        subject, counted + "; the file of its body order is not here, so its parts cannot be made again");
   const auto not_again = [&](const std::exception& error) {
     list.add(false, subject, counted + "; cannot be split again: " + error.what());
   };

@@ -109,7 +109,7 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
       solver_(make_solver(solver, solve_options_, context)),
       keeper_(options.repartition) {
   if (solver_->uses_partition()) {
-    setup_ = {partitioner, refiner, options.skip_small_islands, arity_of(solver)};
+    setup_ = {partitioner, refiner, options.skip_small_islands, arity_of(solver), options.body_order};
     splitter_.emplace(setup_);
     name_.partitioner = partitioner.text;
     name_.refiner = refiner.text;
@@ -274,6 +274,7 @@ std::vector<Outcome> measure_all(std::span<Combination> combinations, const Step
 RunOptions without_history(RunOptions options) {
   options.session = false;
   options.repartition = {};
+  options.body_order = {};
   return options;
 }
 

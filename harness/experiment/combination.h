@@ -118,7 +118,8 @@ std::vector<CombinationName> combination_names(const RunOptions& options);
 std::vector<Outcome> measure_all(std::span<Combination> combinations, const StepProblem& problem, int turn,
                                  std::span<StepRecord> rows);
 
-// What advances a world knows no step before, so that the world goes the same way whatever combinations remember.
+// What advances a world knows no step before and no numbers but the scene's, so that the world goes the same way whatever
+// combinations remember and split by.
 RunOptions without_history(RunOptions options);
 
 // The solver of --advance. Where it needs parts it gets those of the run's first partitioner and refiner.

@@ -14,6 +14,7 @@
 
 #include "harness/base/option_value.h"
 #include "harness/experiment/algorithms.h"
+#include "harness/experiment/body_order.h"
 #include "harness/experiment/repartition.h"
 #include "harness/world/extract.h"
 
@@ -43,6 +44,7 @@ struct RunOptions {
   int repeats = 3;
   bool session = false;  // solvers carry what pays from step to step; each cell is then solved once
   Repartition repartition;
+  BodyOrder body_order;
   int threads = 1;
   double memory_limit_gb = std::numeric_limits<double>::quiet_NaN();             // NaN: what the machine has
   std::uint64_t memory_limit_bytes = std::numeric_limits<std::uint64_t>::max();  // what that is

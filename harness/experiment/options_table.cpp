@@ -134,6 +134,14 @@ OptionSpec repartition() {
       [](const RunOptions& o) { return o.repartition.text; });
 }
 
+OptionSpec body_order() {
+  return spec(
+      {"body-order", About::partition, kRunAndReplay}, Kind::text, "scene|random[@seed=N]|file@PATH",
+      "numbers by which bodies are split: as the scene creates them, shuffled, or on the lines of a file",
+      [](RunOptions& o, const std::string& value) { o.body_order = read_body_order("--body-order", value); },
+      [](const RunOptions& o) { return o.body_order.text; });
+}
+
 OptionSpec seed() {
   return spec(
       {"seed", About::bookkeeping, kWithWorld}, Kind::number, "N",
@@ -176,6 +184,7 @@ std::vector<OptionSpec> experiment_options() {
            "solve every step, each from what the one before left: analysis, active set and factor",
            at(&RunOptions::session)),
       repartition(),
+      body_order(),
       integer({"threads", kAbout, kEverywhere, kChangesNoRow}, {1, 1024}, "threads of a solve",
               at(&RunOptions::threads)),
       number({"memory-limit", kAbout, kEverywhere, kChangesNoRow}, kPositive,

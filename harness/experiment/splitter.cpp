@@ -4,8 +4,10 @@
 #include <iterator>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "harness/base/stopwatch.h"
+#include "harness/experiment/algorithms.h"
 #include "harness/experiment/small_islands.h"
 #include "partition/registry.h"
 
@@ -24,7 +26,11 @@ std::optional<int> arity_of(const Algorithm& solver) {
 Splitter::Splitter(const SplitSetup& setup)
     : partitioner_(make_partitioner(setup.partitioner)),
       refiner_(make_refiner(setup.refiner)),
-      skip_small_islands_(setup.skip_small_islands) {
+      skip_small_islands_(setup.skip_small_islands),
+      order_(setup.order) {
+  if (order_.kind != BodyOrder::Kind::scene && content_of("partitioner", setup.partitioner.name) != nullptr)
+    throw std::invalid_argument("--body-order: " + order_.text + " renumbers bodies, which the parts of " +
+                                setup.partitioner.text + " do not follow; allowed with it: scene");
   if (!setup.choice.empty()) partitioner_->keep_choice(setup.choice);
   if (setup.arity) set_splitter_.emplace(setup.partitioner, setup.refiner, *setup.arity);
   if (skip_small_islands_ && !partitioner_->max_bodies())
@@ -91,6 +97,19 @@ Split Splitter::run(const StepProblem& problem, std::optional<int> step, const K
 }
 
 void Splitter::run(Split& split) const {
+  if (order_.kind == BodyOrder::Kind::scene) return run_by_numbers(split);
+  const std::vector<int> number = order_.numbers(split.graph.body_count(), split.graph.step());
+  const BodyGraph graph = std::exchange(split.graph, split.graph.renumbered(number));
+  run_by_numbers(split);
+  split.graph = graph;
+  for (Partition* partition : {&split.before, &split.parts}) {
+    const std::vector<int> part_of_number = partition->part_of_body;
+    for (std::size_t body = 0; body < number.size(); ++body)
+      partition->part_of_body[body] = part_of_number[number[body]];
+  }
+}
+
+void Splitter::run_by_numbers(Split& split) const {
   if (set_splitter_) {
     run_recursion(split);
   } else {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/base/algorithm.h"
+#include "harness/experiment/body_order.h"
 #include "harness/experiment/problem_graph.h"
 #include "partition/body_graph.h"
 #include "partition/nested.h"
@@ -39,6 +40,7 @@ struct SplitSetup {
   Algorithm partitioner, refiner;
   bool skip_small_islands = false;
   std::optional<int> arity = {};  // children of a set, by recursion; none: one level
+  BodyOrder order = {};           // numbers by which they are split
   std::string choice = {};        // that a partitioner made before and is to make again; empty: it chooses
 };
 
@@ -48,7 +50,7 @@ std::optional<int> arity_of(const Algorithm& solver);
 class Splitter {
  public:
   // Throws std::invalid_argument for --skip-small-islands with a partitioner that has no max-bodies, for a choice that
-  // the partitioner does not make, and as SetSplitter.
+  // the partitioner does not make, for another order than the scene's with parts that come from files, and as SetSplitter.
   explicit Splitter(const SplitSetup& setup);
 
   // step: which one of its run the problem is. Throws CannotSplit where the partitioner does.
@@ -62,6 +64,7 @@ class Splitter {
   int most_bodies(const Partition& grown) const;
 
  private:
+  void run_by_numbers(Split& split) const;
   void run_once(Split& split) const;
   void run_recursion(Split& split) const;
   NestedPartition nest(const BodyGraph& graph, bool refines, double& refine_ms) const;
@@ -71,6 +74,7 @@ class Splitter {
   std::unique_ptr<Refiner> refiner_;
   std::optional<SetSplitter> set_splitter_;  // where there is an arity
   bool skip_small_islands_;
+  BodyOrder order_;
 };
 
 }  // namespace cleave

@@ -44,6 +44,7 @@ StepRecord solve_columns(const RunOptions& options) {
   row.skip_small_islands = options.skip_small_islands;
   row.session = options.session;
   row.repartition = options.repartition.text;
+  row.body_order = options.body_order.text;
   return row;
 }
 

@@ -30,6 +30,9 @@ constexpr std::string_view kLate[] = {"partition_seed",  "trials",      "karger_
                                       "split",           "calibration", "cost_kernel",   "cost_threads",
                                       "lemke_max_rows"};
 
+// Behind them came other columns too.
+constexpr std::string_view kNewest = "restart";
+
 // 0 for all that are not late.
 std::ptrdiff_t late_rank(const std::string& column) {
   const auto found = std::ranges::find(kLate, column);
@@ -39,6 +42,7 @@ std::ptrdiff_t late_rank(const std::string& column) {
 ParameterColumn::Place place_of(const std::string& column) {
   static const std::set<std::string> first = {"max_bodies", "tau_mr", "tau_mix", "max_growth"};
   if (first.contains(column)) return ParameterColumn::Place::first;
+  if (column == kNewest) return ParameterColumn::Place::newest;
   return late_rank(column) > 0 ? ParameterColumn::Place::last : ParameterColumn::Place::among_options;
 }
 

@@ -38,7 +38,7 @@ inline constexpr const char* kStepsSchema = "cleave-steps-5";
 // A column of a parameter of algorithms (algorithms.h). Those of the first tables stand first; some came when
 // there were others behind them, and stand last.
 struct ParameterColumn {
-  enum class Place { first, among_options, last };
+  enum class Place { first, among_options, last, newest };
 
   std::string name, help;
   About about;
@@ -116,6 +116,7 @@ struct StepRecord {
   double factor_predicted_mb = kUnmeasured;
   std::string auto_choice = "-";
   double friction_beyond_share = kUnmeasured;
+  std::string body_order = "-";
 
   std::string parameter(const std::string& column) const {
     const auto found = parameters.find(column);
@@ -307,6 +308,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         "partitioner+refiner/kernel that the partitioner auto chose, the kernel being that of the model");
   visit("friction_beyond_share", r.friction_beyond_share,
         "share of the same friction rows whose |impulse| is above mu n (1 + 1e-9)");
+  visit_parameters(ParameterColumn::Place::newest);
+  visit("body_order", r.body_order, "numbers by which bodies are split, as given", About::partition);
 }
 
 // A text as a cell: commas, quotes and line ends quoted as RFC 4180 has it.

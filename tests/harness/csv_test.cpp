@@ -51,7 +51,8 @@ TEST(Csv, LaterColumnsStandAtTheEnd) {
       ",schema_version,t_s_model_p32_ms,t_s_model_p64_ms,t_s_critical_path_ms,factor_predicted_mb,"
       "session,factor_reuses,cg_iterations,factor_mflop_done,partition_seed,trials,karger_method,ufactor,"
       "scotch_strategy,effort,patience,merge_small,split,calibration,cost_kernel,cost_threads,lemke_max_rows,"
-      "repartition,partition_origin,auto_choice,friction_beyond_share\n"));
+      "repartition,partition_origin,auto_choice,friction_beyond_share,"
+      "restart,body_order\n"));
 }
 
 TEST(Csv, HeaderRowAndColumnListAgree) {

@@ -115,7 +115,7 @@ TEST_F(OutsidePartitions, ExportRefusesInOneLine) {
     return result.err;
   };
   EXPECT_EQ(error_of({"export", problem(), "--format", "scotch", "--out", out}),
-            "cleave export: --format: 'scotch' is unknown; choices: metis\n");
+            "cleave export: --format: 'scotch' is unknown; choices: metis, mtx\n");
   EXPECT_FALSE(fs::exists(out));
   EXPECT_NE(error_of({"export", problem(), "--out", out}).find("--format: is required"), std::string::npos);
   EXPECT_NE(error_of({"export", problem(), "--format", "metis"}).find("--out: is required"),
