@@ -22,7 +22,7 @@ using Files = std::set<std::string>;
 const std::map<std::string, Files> kGivers = {
     {"ok", {"solver/step_solver.h", "harness/experiment/combination.h", "harness/peers/peer_process.h"}},
     {"not_converged",
-     {"solver/direct_solver.cpp", "solver/baselines/iterative_baseline.cpp",
+     {"solver/direct_solver.cpp", "solver/baselines/iterative_baseline.cpp", "solver/baselines/lemke.cpp",
       "harness/experiment/combination.cpp", "harness/peers/peer_solver.cpp"}},
     {"timeout", {"harness/peers/peer_process.cpp"}},
     {"out_of_memory",
@@ -30,8 +30,8 @@ const std::map<std::string, Files> kGivers = {
     {"diverged",
      {"solver/direct_solver.cpp", "harness/experiment/combination.cpp", "harness/peers/peer_solver.cpp"}},
     {"refused",
-     {"solver/step_solver.cpp", "harness/world/ode_baselines.cpp", "harness/experiment/combination.cpp",
-      "harness/peers/peer_solver.cpp"}},
+     {"solver/step_solver.cpp", "solver/baselines/lemke.cpp", "harness/world/ode_baselines.cpp",
+      "harness/experiment/combination.cpp", "harness/peers/peer_solver.cpp"}},
     {"crashed", {"harness/world/ode_baselines.cpp", "harness/peers/peer_process.cpp"}},
     {"skipped", {"harness/experiment/step_record.h"}},
 };
