@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "solver/counting_sort.h"
+#include "solver/gauss_seidel.h"
 #include "solver/group_products.h"
 
 namespace cleave {
@@ -108,8 +109,7 @@ void SplitSweep::sweep_group(int group, std::span<double> impulse) {
   load_pair(of_a, of_b, both);
   for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
     const double old = impulse[r];
-    const double w =
-        row_times(problem.jacobian.data() + 12L * r, both) + problem.compliance[r] * old - problem.rhs[r];
+    const double w = LaneSlack{}(problem, r, both, old);
     impulse[r] = std::clamp(old - w / diagonal_[r], problem.lower[r], problem.upper[r]);
     const double change = impulse[r] - old;
     const double* mj = step_->mass_jacobian().data() + 12L * r;

@@ -1,6 +1,7 @@
 #include "solver/baselines/iterative_baseline.h"
 
 #include "solver/impulse_set.h"
+#include "solver/stop.h"
 
 namespace cleave {
 
@@ -32,6 +33,15 @@ SolveSummary IterativeBaseline::do_solve(const StepProblem& problem, const Parts
   }
   summary.times = clock_.stop();
   return summary;
+}
+
+int SweepingBaseline::iterate(const PreparedStep& step, Solution& solution) {
+  begin(step);
+  for (int k = 0; k < sweeps_; ++k) {
+    check_stop(stop());
+    sweep(step, solution);
+  }
+  return sweeps_;
 }
 
 }  // namespace cleave

@@ -48,4 +48,20 @@ class IterativeBaseline : public StepSolver {
   std::vector<double> slack_;
 };
 
+// Those whose iterations are a fixed number of sweeps; stop is looked at before each.
+class SweepingBaseline : public IterativeBaseline {
+ public:
+  SweepingBaseline(std::string_view name, const SolveOptions& options, int sweeps)
+      : IterativeBaseline(name, options), sweeps_(sweeps) {}
+
+ private:
+  // Once a solve, before the first sweep.
+  virtual void begin(const PreparedStep& step) = 0;
+  virtual void sweep(const PreparedStep& step, Solution& solution) = 0;
+
+  int iterate(const PreparedStep& step, Solution& solution) final;
+
+  int sweeps_;
+};
+
 }  // namespace cleave

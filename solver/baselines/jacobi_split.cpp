@@ -15,24 +15,20 @@
 namespace cleave {
 namespace {
 
-class JacobiSplit : public IterativeBaseline {
+class JacobiSplit : public SweepingBaseline {
  public:
-  JacobiSplit(const SolveOptions& options, int sweeps)
-      : IterativeBaseline("jacobi-split", options), sweeps_(sweeps) {}
+  JacobiSplit(const SolveOptions& options, int sweeps) : SweepingBaseline("jacobi-split", options, sweeps) {}
 
  private:
-  int iterate(const PreparedStep& step, Solution& solution) override {
+  void begin(const PreparedStep& step) override {
     domain_of_group_.resize(step.groups().size());
     std::iota(domain_of_group_.begin(), domain_of_group_.end(), 0);
     split_.bind(step, domain_of_group_, static_cast<int>(domain_of_group_.size()));
-    for (int sweep = 0; sweep < sweeps_; ++sweep) {
-      check_stop(stop());
-      split_.run(solution.impulse, solution.velocity, tasks());
-    }
-    return sweeps_;
+  }
+  void sweep(const PreparedStep&, Solution& solution) override {
+    split_.run(solution.impulse, solution.velocity, tasks());
   }
 
-  int sweeps_;
   SplitSweep split_;
   std::vector<int> domain_of_group_;
 };

@@ -14,19 +14,14 @@ namespace {
 
 constexpr int kTaskGroups = 64;  // of one task: about 300 rows of a pile, some microseconds
 
-class PgsColored : public IterativeBaseline {
+class PgsColored : public SweepingBaseline {
  public:
-  PgsColored(const SolveOptions& options, int sweeps)
-      : IterativeBaseline("pgs-colored", options), sweeps_(sweeps) {}
+  PgsColored(const SolveOptions& options, int sweeps) : SweepingBaseline("pgs-colored", options, sweeps) {}
 
  private:
-  int iterate(const PreparedStep& step, Solution& solution) override {
-    coloring_.color(step.body_count(), step.groups());
-    for (int sweep = 0; sweep < sweeps_; ++sweep) {
-      check_stop(stop());
-      for (int color = 0; color < coloring_.color_count(); ++color) visit_color(step, color, solution);
-    }
-    return sweeps_;
+  void begin(const PreparedStep& step) override { coloring_.color(step.body_count(), step.groups()); }
+  void sweep(const PreparedStep& step, Solution& solution) override {
+    for (int color = 0; color < coloring_.color_count(); ++color) visit_color(step, color, solution);
   }
 
   void visit_color(const PreparedStep& step, int color, Solution& solution) {
@@ -40,7 +35,6 @@ class PgsColored : public IterativeBaseline {
     });
   }
 
-  int sweeps_;
   GroupColoring coloring_;
 };
 

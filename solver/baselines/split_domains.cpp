@@ -21,14 +21,14 @@
 namespace cleave {
 namespace {
 
-class SplitDomains : public IterativeBaseline {
+class SplitDomains : public SweepingBaseline {
  public:
   SplitDomains(const SolveOptions& options, int sweeps)
-      : IterativeBaseline("split-domains", options), sweeps_(sweeps) {}
+      : SweepingBaseline("split-domains", options, sweeps) {}
   bool uses_partition() const override { return true; }
 
  private:
-  int iterate(const PreparedStep& step, Solution& solution) override {
+  void begin(const PreparedStep& step) override {
     int domains = 0;
     domain_of_group_.clear();
     for (const RowGroup& g : step.groups()) {
@@ -36,14 +36,11 @@ class SplitDomains : public IterativeBaseline {
       domains = std::max(domains, domain_of_group_.back() + 1);
     }
     split_.bind(step, domain_of_group_, domains);
-    for (int sweep = 0; sweep < sweeps_; ++sweep) {
-      check_stop(stop());
-      split_.run(solution.impulse, solution.velocity, tasks());
-    }
-    return sweeps_;
+  }
+  void sweep(const PreparedStep&, Solution& solution) override {
+    split_.run(solution.impulse, solution.velocity, tasks());
   }
 
-  int sweeps_;
   SplitSweep split_;
   std::vector<int> domain_of_group_;
 };
