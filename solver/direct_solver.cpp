@@ -228,14 +228,15 @@ bool DirectSolver::attempt(SolveSummary& summary, double delta, std::span<const 
 }
 
 // The problem itself; then proximal steps where compliance is so small, or zero, that rounding kept the first
-// attempt above the limit.
+// attempt above the limit. Those stand on an active set, which cones have not; the interior point's own delta serves them.
 bool DirectSolver::run_attempts(SolveSummary& summary, const StepProblem& problem,
                                 std::span<const double> warm_impulse) {
   const double stiffest = step_.least_relative_compliance();
+  const bool has_cones = !step_.set().cones().empty();
   attempt_best_.clear();
   int attempts = 0;
   for (double delta : kProximalDeltas) {
-    if (delta > 0 && stiffest >= delta) continue;
+    if (delta > 0 && (stiffest >= delta || has_cones)) continue;
     if (attempts++ > 0) ++summary.fallbacks;
     if (attempt(summary, delta, warm_impulse)) return true;
     if (delta > 0) step_.prepare(problem, &state_.tasks);

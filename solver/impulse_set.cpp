@@ -18,11 +18,35 @@ std::size_t first_cone(const StepProblem& problem) {
   return std::ranges::find_if(problem.contact_set, no_box) - problem.contact_set.begin();
 }
 
+double larger_or_nan(double a, double b) { return a > b || std::isnan(a) ? a : b; }
+
+FrictionCone cone_of(const StepProblem& problem, int normal) {
+  const bool two_tangents = normal + 2 < problem.row_count() && problem.friction_row[normal + 2] == normal;
+  return {normal, two_tangents ? 3 : 2, problem.friction_coefficient[normal + 1],
+          problem.contact_set[normal] == ContactSet::coulomb};
+}
+
+double interval_residual(const StepProblem& problem, int first, int last, std::span<const double> d,
+                         std::span<const double> impulse, std::span<const double> w) {
+  double worst = 0;
+  for (int r = first; r < last; ++r) {
+    const double target = std::clamp(impulse[r] - w[r] / d[r], problem.lower[r], problem.upper[r]);
+    const double miss = d[r] * std::abs(impulse[r] - target);
+    if (!(miss <= worst)) worst = miss;  // a NaN must not pass unseen
+    if (std::isnan(worst)) return worst;
+  }
+  return worst;
+}
+
 }  // namespace
 
 void ImpulseSet::bind(const StepProblem& problem) {
   problem_ = &problem;
   axes_.clear();
+  cones_.clear();
+  for (std::size_t r = 0; r < problem.contact_set.size(); ++r) {
+    if (problem.contact_set[r] != ContactSet::box) cones_.push_back(cone_of(problem, static_cast<int>(r)));
+  }
   for (std::size_t r = 0; r < problem.box_angle_rad.size(); ++r) {
     const double angle = problem.box_angle_rad[r];
     if (angle == 0) continue;
@@ -38,21 +62,40 @@ std::span<const double> ImpulseSet::in_rows(std::span<const double> x, std::vect
   return scratch;
 }
 
-void ImpulseSet::project(std::span<double> impulse) const {
-  for (std::size_t r = 0; r < impulse.size(); ++r) {
-    impulse[r] = std::clamp(impulse[r], problem_->lower[r], problem_->upper[r]);
+// visit_rows(first, last) for runs of rows with an interval each, visit_cone(cone) between them.
+template <class Rows, class Cone>
+void ImpulseSet::visit(int first, int last, const Rows& visit_rows, const Cone& visit_cone) const {
+  const auto end_of = [](const FrictionCone& cone) { return cone.first_row + cone.row_count; };
+  auto cone = std::ranges::upper_bound(cones_, first, {}, end_of);
+  int row = first;
+  for (; cone != cones_.end() && cone->first_row < last; ++cone) {
+    if (cone->first_row > row) visit_rows(row, cone->first_row);
+    if (cone->first_row >= first) visit_cone(*cone);
+    row = end_of(*cone);
   }
+  if (row < last) visit_rows(row, last);
+}
+
+void ImpulseSet::project(std::span<double> impulse) const {
+  const auto clamp = [&](int first, int last) {
+    for (int r = first; r < last; ++r) {
+      impulse[r] = std::clamp(impulse[r], problem_->lower[r], problem_->upper[r]);
+    }
+  };
+  visit(0, static_cast<int>(impulse.size()), clamp,
+        [&](const FrictionCone& cone) { cone.store(project_on_cone(cone.load(impulse), cone.mu), impulse); });
 }
 
 double ImpulseSet::residual(int first, int last, std::span<const double> d, std::span<const double> impulse,
                             std::span<const double> w) const {
   double worst = 0;
-  for (int r = first; r < last; ++r) {
-    const double target = std::clamp(impulse[r] - w[r] / d[r], problem_->lower[r], problem_->upper[r]);
-    const double miss = d[r] * std::abs(impulse[r] - target);
-    if (!(miss <= worst)) worst = miss;  // a NaN must not pass unseen
-    if (std::isnan(worst)) return worst;
-  }
+  const auto of_rows = [&](int begin, int end) {
+    worst = larger_or_nan(worst, interval_residual(*problem_, begin, end, d, impulse, w));
+  };
+  visit(first, last, of_rows, [&](const FrictionCone& cone) {
+    const Eigen::Vector3d apart = cone_residual(cone.mu, d[cone.first_row], cone.load(impulse), cone.load(w));
+    worst = larger_or_nan(worst, apart.cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
+  });
   return worst;
 }
 

@@ -12,6 +12,8 @@
 // Strategies work along these axes, where the set is a box; kernels and bodies see rows, where the weights of
 // such a contact are a 3x3 block D = F diag(d) F^T. Without turned boxes both are the same numbers and
 // nothing is copied.
+//
+// The rows of a contact with a cone (StepProblem::contact_set) stand as they are; their set is cone.h's.
 #pragma once
 
 #include <span>
@@ -19,6 +21,7 @@
 #include <string_view>
 #include <vector>
 
+#include "solver/cone.h"
 #include "solver/row_weights.h"
 #include "solver/step_problem.h"
 
@@ -32,6 +35,11 @@ class ImpulseSet {
   // F of every turned box, ascending; empty where every row has an interval of its own.
   std::span<const WeightBlock> axes() const { return axes_; }
 
+  // Of every contact whose set is no box, ascending.
+  std::span<const FrictionCone> cones() const { return cones_; }
+  // Whether a contact's weights are a block (row_weights.h).
+  bool has_blocks() const { return !axes_.empty() || !cones_.empty(); }
+
   // (m) from rows to axes and back; F is orthonormal, so impulses, slacks and right-hand sides turn alike.
   void to_axes(std::span<double> x) const { to_basis(axes_, x); }
   void to_rows(std::span<double> x) const { from_basis(axes_, x); }
@@ -42,13 +50,18 @@ class ImpulseSet {
   void project(std::span<double> impulse) const;
 
   // max_r d_r |lambda_r - projection of (lambda_r - w_r / d_r)| of rows first .. last - 1; arrays (m) along
-  // the axes. NaN where one is no number.
+  // the axes. A cone is projected on as a whole and is of the range that its normal row is in; Coulomb's law has in w what it
+  // adds (shifted_slack). NaN where one is no number.
   double residual(int first, int last, std::span<const double> d, std::span<const double> impulse,
                   std::span<const double> w) const;
 
  private:
+  template <class Rows, class Cone>
+  void visit(int first, int last, const Rows& visit_rows, const Cone& visit_cone) const;
+
   const StepProblem* problem_ = nullptr;
   std::vector<WeightBlock> axes_;
+  std::vector<FrictionCone> cones_;
 };
 
 // The sets that an algorithm takes; one that takes a kind takes those before it.

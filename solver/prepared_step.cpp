@@ -59,6 +59,7 @@ void PreparedStep::prepare(const StepProblem& problem, ParallelTasks* tasks) {
   run(group_chunks_, [this](const Chunk& chunk) { prepare_rows(chunk); });
   set_.bind(problem);
   turn_diagonal();
+  level_diagonal();
   least_relative_compliance_ = std::numeric_limits<double>::infinity();
   for (int r = 0; r < m; ++r) {
     least_relative_compliance_ = std::min(least_relative_compliance_, problem.compliance[r] / diagonal_[r]);
@@ -128,6 +129,14 @@ void PreparedStep::turn_diagonal() {
       for (int c = 0; c < 12; ++c) d += j[c] * mj[c];
       diagonal_[block.first_row + k] = d > 0 ? d : 1;
     }
+  }
+}
+
+// The rows of a cone have one d.
+void PreparedStep::level_diagonal() {
+  for (const FrictionCone& cone : set_.cones()) {
+    const auto rows = std::span(diagonal_).subspan(cone.first_row, cone.row_count);
+    std::ranges::fill(rows, std::ranges::max(rows));
   }
 }
 

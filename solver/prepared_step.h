@@ -53,7 +53,7 @@ class PreparedStep {
   // (m, 12) rows of M^-1 J^T, laid out as the Jacobian.
   std::span<const double> mass_jacobian() const { return mass_jacobian_; }
   const ImpulseSet& set() const { return set_; }
-  // (m) d_r = (J M^-1 J^T + C)_rr along the axes of the set.
+  // (m) d_r = (J M^-1 J^T + C)_rr along the axes of the set; on the rows of a cone the largest of theirs.
   std::span<const double> diagonal() const { return diagonal_; }
   double velocity_scale() const { return velocity_scale_; }  // max(1, largest |v0|), m/s
   double least_relative_compliance() const {
@@ -81,6 +81,7 @@ class PreparedStep {
   void prepare_bodies(const Chunk& chunk);
   void prepare_rows(const Chunk& chunk);
   void turn_diagonal();
+  void level_diagonal();
   template <class Task>
   void run(std::span<const Chunk> chunks, const Task& task) const;
   void add_transpose(const double* rows, std::span<const double> x, std::span<const double> base,

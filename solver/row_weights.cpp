@@ -1,22 +1,39 @@
 #include "solver/row_weights.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace cleave {
 namespace {
 
-// The rows first .. first + count of x (m, width), multiplied by B^T or B from the left.
-void multiply_rows(const WeightBlock& block, bool transposed, int width, double* x) {
-  const int count = block.row_count;
-  x += static_cast<std::ptrdiff_t>(width) * block.first_row;
-  for (int c = 0; c < width; ++c) {
-    double result[3] = {};
-    for (int i = 0; i < count; ++i) {
-      for (int k = 0; k < count; ++k) {
-        result[i] += block.basis[transposed ? count * i + k : count * k + i] * x[width * k + c];
-      }
+// The rows of a block of x (m, kWidth), multiplied by B^T or B from the left. All sizes are known to the compiler: a solve
+// comes here three times an iteration.
+template <int kCount, int kWidth, bool kTransposed>
+void multiply_rows(const WeightBlock& block, double* x) {
+  x += static_cast<std::ptrdiff_t>(kWidth) * block.first_row;
+  double result[kCount][kWidth] = {};
+  for (int i = 0; i < kCount; ++i) {
+    for (int k = 0; k < kCount; ++k) {
+      const double share = block.basis[kTransposed ? kCount * i + k : kCount * k + i];
+      for (int c = 0; c < kWidth; ++c) result[i][c] += share * x[kWidth * k + c];
     }
-    for (int i = 0; i < count; ++i) x[width * i + c] = result[i];
+  }
+  std::copy_n(&result[0][0], kCount * kWidth, x);
+}
+
+template <int kWidth, bool kTransposed>
+void multiply_blocks(std::span<const WeightBlock> blocks, double* x) {
+  for (const WeightBlock& block : blocks) {
+    switch (block.row_count) {
+      case 1:
+        multiply_rows<1, kWidth, kTransposed>(block, x);
+        break;
+      case 2:
+        multiply_rows<2, kWidth, kTransposed>(block, x);
+        break;
+      default:
+        multiply_rows<3, kWidth, kTransposed>(block, x);
+    }
   }
 }
 
@@ -33,11 +50,11 @@ bool fits(const StepProblem& problem, const WeightBlock& block) {
 }  // namespace
 
 void to_basis(std::span<const WeightBlock> blocks, std::span<double> x) {
-  for (const WeightBlock& block : blocks) multiply_rows(block, true, 1, x.data());
+  multiply_blocks<1, true>(blocks, x.data());
 }
 
 void from_basis(std::span<const WeightBlock> blocks, std::span<double> x) {
-  for (const WeightBlock& block : blocks) multiply_rows(block, false, 1, x.data());
+  multiply_blocks<1, false>(blocks, x.data());
 }
 
 void WeightedRows::set(const StepProblem& problem, const RowWeights& weights) {
@@ -47,10 +64,8 @@ void WeightedRows::set(const StepProblem& problem, const RowWeights& weights) {
   if (blocks_.empty()) return;
   turned_jacobian_ = problem.jacobian;
   jacobian_ = turned_jacobian_.data();
-  for (const WeightBlock& block : blocks_) {
-    assert(fits(problem, block));
-    multiply_rows(block, true, 12, turned_jacobian_.data());
-  }
+  assert(std::ranges::all_of(blocks_, [&](const WeightBlock& block) { return fits(problem, block); }));
+  multiply_blocks<12, true>(blocks_, turned_jacobian_.data());
 }
 
 }  // namespace cleave

@@ -26,6 +26,10 @@ void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, Solve
   dv.resize(n6);
   dlambda.resize(m);
   violated.clear();
+  blocks.assign(prepared.set().axes().begin(), prepared.set().axes().end());
+  for (const FrictionCone& cone : prepared.set().cones())
+    blocks.push_back({cone.first_row, cone.row_count, {}});
+  shift.assign(prepared.set().cones().size(), 0.0);
   update_velocity();
 }
 
@@ -34,6 +38,18 @@ void SolveState::update_velocity() {
   step->velocity(in_rows, velocity);
   step->slack(velocity, in_rows, slack);
   step->set().to_axes(slack);
+  for (std::size_t k = 0; k < shift.size(); ++k) slack[step->set().cones()[k].first_row] += shift[k];
+}
+
+void SolveState::update_shift() {
+  for (std::size_t k = 0; k < shift.size(); ++k) {
+    const FrictionCone& cone = step->set().cones()[k];
+    if (!cone.coulomb) continue;
+    slack[cone.first_row] -= shift[k];
+    const Eigen::Vector3d w = cone.load(slack);
+    cone.store(shifted_slack(cone.mu, w), slack);
+    shift[k] = slack[cone.first_row] - w[0];
+  }
 }
 
 void SolveState::analyze() {
@@ -47,14 +63,16 @@ bool SolveState::factor() {
   check_stop(options.stop);
   analyze();
   ++summary->factorizations;
-  const bool factored = kernel->factor({weight, step->set().axes()}, tasks);
+  const bool factored = kernel->factor({weight, blocks}, tasks);
   summary->factor_mflop_done += kernel->done_mflop();
   return factored;
 }
 
 void SolveState::solve() {
   check_stop(options.stop);
+  to_basis(cone_blocks(), f_r);
   kernel->solve(f_v, f_r, dv, dlambda, tasks);
+  from_basis(cone_blocks(), dlambda);
 }
 
 void SolveState::states_from_impulses() {
@@ -111,9 +129,23 @@ double SolveState::refine_free(double target, int most_steps, bool count) {
   return worst;
 }
 
-double SolveState::residual() {
+double SolveState::residual_of_cones() {
   return greatest_over_ranges([this](int first, int last) {
     return step->set().residual(first, last, step->diagonal(), impulse, slack);
+  });
+}
+
+double SolveState::residual() {
+  if (std::ranges::none_of(step->set().cones(), &FrictionCone::coulomb)) return residual_of_cones();
+  law_slack = slack;
+  for (std::size_t k = 0; k < shift.size(); ++k) {
+    const FrictionCone& cone = step->set().cones()[k];
+    if (!cone.coulomb) continue;
+    law_slack[cone.first_row] -= shift[k];
+    cone.store(shifted_slack(cone.mu, cone.load(law_slack)), law_slack);
+  }
+  return greatest_over_ranges([this](int first, int last) {
+    return step->set().residual(first, last, step->diagonal(), impulse, law_slack);
   });
 }
 
@@ -125,9 +157,10 @@ int SolveState::find_violations(double tolerance) {
   const auto is_violated = [&](int r) {
     const double lower = problem.lower[r], upper = problem.upper[r], d = diagonal[r];
     const bool out = ((lower - impulse[r]) * d > tolerance) | ((impulse[r] - upper) * d > tolerance);
-    const bool leaves_lower = slack[r] < -tolerance, leaves_upper = slack[r] > tolerance;
+    const bool leaves_lower = slack[r]<-tolerance, leaves_upper = slack[r]> tolerance;
     const bool is_free = state[r] == RowState::free, is_lower = state[r] == RowState::lower;
-    return (lower != upper) & ((is_free & out) | (is_lower & leaves_lower) | (!is_free & !is_lower & leaves_upper));
+    return (lower != upper) &
+           ((is_free & out) | (is_lower & leaves_lower) | (!is_free & !is_lower & leaves_upper));
   };
   row_is_violated.resize(impulse.size());
   run_over_rows([&](int first, int last, int) {

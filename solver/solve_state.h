@@ -5,6 +5,10 @@
 // set (impulse_set.h), where bounds are bounds of single numbers. They are the bases of the blocks that
 // factor() hands the kernel, whose right-hand sides and increments are along them too. Without turned boxes
 // axes and rows are the same.
+//
+// The rows of a cone (cone.h) have a block of the strategy's own; weights are along its basis, right-hand sides and
+// increments in rows, which solve() turns. Where the law is Coulomb's, the strategy sees a cone whose normal slack is
+// raised by `shift`, mu |w_t| of an earlier iterate.
 #pragma once
 
 #include <algorithm>
@@ -46,7 +50,7 @@ struct SolveState {
   void begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,
              std::span<const double> warm_impulse);
 
-  // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b from the impulses.
+  // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b (plus the shift) from the impulses.
   void update_velocity();
 
   // The kernel's factorisation for the weights; counted. False when it finds a non-positive pivot.
@@ -56,8 +60,9 @@ struct SolveState {
   // one of its tasks. factor() does it otherwise.
   void analyze();
 
-  // dv and dlambda from f_v and f_r by the kernel.
+  // dv and dlambda from f_v and f_r by the kernel; f_r of cones is left along their bases.
   void solve();
+  std::span<WeightBlock> cone_blocks() { return std::span(blocks).last(step->set().cones().size()); }
 
   // Row states read off the impulses: at a bound exactly means bound, everything else free.
   void states_from_impulses();
@@ -100,6 +105,10 @@ struct SolveState {
 
   // The quantity the judge measures; infinite where it is no number.
   double residual();
+  // The same of the cones that the strategy sees in the place of Coulomb's law.
+  double residual_of_cones();
+  // shift <- mu |w_t| of the present velocities, and into the slacks.
+  void update_shift();
 
   DirectOptions options;
   ParallelTasks tasks;
@@ -112,11 +121,14 @@ struct SolveState {
   std::vector<double> impulse, velocity, slack;  // (m), (n, 6), (m)
   std::vector<RowState> state;                   // (m)
   std::vector<double> weight;                    // (m) D of the present factor
-  std::vector<double> f_v, f_r, dv, dlambda;     // right-hand sides and increments
+  std::vector<WeightBlock> blocks;  // of the present factor: the axes of the set, then one a cone
+  std::vector<double> shift;        // (cones) m/s, zero but for Coulomb's law; empty where no cone is
+  std::vector<double> f_v, f_r, dv, dlambda;  // right-hand sides and increments
   // In a session: rows that the last solve left in another state than the warm start had told; all where it does not know.
   int changed_rows = std::numeric_limits<int>::max();
   std::vector<int> violated;        // rows found by find_violations
   std::vector<double> row_impulse;  // (m) scratch: impulses in rows where a box is turned
+  std::vector<double> law_slack;    // (m) scratch: slacks with the shift of the present velocities
   // Scratch: of greatest_over_rows and find_violations.
   std::vector<double> range_values;
   std::vector<char> row_is_violated;

@@ -41,7 +41,7 @@ void BranchKernel::request_memory(const PreparedStep& step, ParallelTasks& tasks
   memory.add_grown(stages_.of_body, waits_, places_, changed_, factored_);
   memory.add<double>(12, step.groups().size());
   memory.add<double>(6, step.body_count());
-  if (!step.set().axes().empty()) memory.add<double>(12, step.row_count());
+  if (step.set().has_blocks()) memory.add<double>(12, step.row_count());
   tasks.memory().request(memory, analyzed);
 }
 

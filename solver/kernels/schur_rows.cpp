@@ -104,7 +104,7 @@ void SchurRowsKernel::count_interface(MemoryCount& memory) const {
   memory.add<double>(cut_rows);  // lambda
   memory.add<int>(6, cut_rows);  // where each row is
   memory.add_grown(split_.local_of_body, split_.cut_groups, split_.cut_rows);
-  if (!step_->set().axes().empty()) memory.add<double>(12, step_->row_count());
+  if (step_->set().has_blocks()) memory.add<double>(12, step_->row_count());
   for (int i = 0; i < split_.part_count; ++i) {
     const PartRows& rows = split_.parts[i];
     memory.add_grown(rows.bodies, rows.groups, rows.cut_rows, rows.cut_side);

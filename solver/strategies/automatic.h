@@ -2,7 +2,7 @@
 // sees.
 //
 //   pivot           pivot, then interior-point when the violations stop falling
-//   auto            a turned box: interior-point, the only one that takes it;
+//   auto            a cone or a turned box: interior-point, the only one that takes them;
 //                   all rows bilateral: pivot (its first factorisation is the answer);
 //                   otherwise by the scaled compliance C_r / d_r, which bounds how nearly redundant rows may
 //                   become dependent: pivot above kPivotCompliance, interior-point below, with newton and

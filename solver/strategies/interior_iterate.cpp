@@ -21,6 +21,7 @@ void InteriorIterate::choose_impulses(SolveState& state) {
 // have a large d and heavy ones a small one. The same speed everywhere would let the heavy rule the target.
 void InteriorIterate::start(SolveState& state) {
   choose_impulses(state);
+  state.update_shift();
   const int m = state.step->row_count();
   double energy = 0, fastest = 0;
   for (int r = 0; r < m; ++r) {
@@ -35,6 +36,8 @@ void InteriorIterate::start(SolveState& state) {
     row_speed_[r] = std::max(constants_.least_speed_m_per_s, speed);
   }
   barrier_.start(state, row_speed_);
+  cones_.start(state, row_speed_);
+  shift_.begin(cones_.product_count());
   state.update_velocity();
 }
 
@@ -44,6 +47,7 @@ bool InteriorIterate::factor(SolveState& state, double delta) {
     for (int r = first; r < last; ++r)
       state.weight[r] = std::max(problem.compliance[r], delta * state.step->diagonal()[r]);
   });
+  cones_.weigh(state, state.weight);
   barrier_.weigh(state, state.weight);
   return state.factor();
 }
@@ -64,31 +68,55 @@ void InteriorIterate::set_products(SolveState& state, Aim aim) {
     target_ = share * now;
   }
   barrier_.aim(state, target_, aim == Aim::mehrotra);
+  cones_.aim(state, target_, aim == Aim::mehrotra);
+}
+
+void InteriorIterate::right_hand_side(SolveState& state) const {
+  barrier_.right_hand_side(state);
+  cones_.add_to_right_hand_side(state);
+  for (std::size_t k = 0; k < shift_.change().size(); ++k)
+    state.f_r[state.step->set().cones()[k].first_row] -= shift_.change()[k];
+}
+
+void InteriorIterate::match_shift(SolveState& state, double tolerance, int most) {
+  wanted_shift_.resize(state.shift.size());
+  shift_.restart();
+  for (int k = 0; k < most; ++k) {
+    cones_.predict_shift(state, wanted_shift_);
+    for (std::size_t c = 0; c < wanted_shift_.size(); ++c) wanted_shift_[c] -= state.shift[c];
+    const double apart = shift_.improve(wanted_shift_);
+    if (apart <= tolerance) break;
+    solve(state);
+  }
 }
 
 void InteriorIterate::solve(SolveState& state) {
-  barrier_.right_hand_side(state);
+  right_hand_side(state);
   std::fill(state.f_v.begin(), state.f_v.end(), 0.0);
   state.solve();
   course_ = barrier_.follow(state);
+  const BarrierCourse of_cones = cones_.follow(state);
+  course_.largest_step = std::min(course_.largest_step, of_cones.largest_step);
+  for (int power = 0; power < 3; ++power) course_.product[power] += of_cones.product[power];
 }
 
 double InteriorIterate::rounding(SolveState& state) {
-  barrier_.right_hand_side(state);
+  right_hand_side(state);
   change_.resize(state.velocity.size());
   row_error_.resize(state.impulse.size());
   state.step->velocity(state.step->set().in_rows(state.dlambda, state.row_impulse), change_);
   for (std::size_t c = 0; c < change_.size(); ++c) change_[c] -= state.step->problem().free_velocity[c];
   state.step->jacobian_times(change_, row_error_);
   state.step->set().to_axes(row_error_);
-  return state.greatest_over_rows([&](int r) {
-    if (barrier_.is_fixed(r)) return 0.0;
+  const double of_cones = cones_.rounding(state, row_error_);
+  return std::max(of_cones, state.greatest_over_rows([&](int r) {
+    if (barrier_.is_fixed(r) || barrier_.is_of_cone(r)) return 0.0;
     return std::abs(state.f_r[r] - row_error_[r] - state.dlambda[r] / state.weight[r]);
-  });
+  }));
 }
 
 double InteriorIterate::mean_product(double step) const {
-  const std::size_t count = barrier_.product_count();
+  const std::size_t count = barrier_.product_count() + cones_.product_count();
   if (count == 0) return 0;
   const double* product = course_.product;
   return (product[0] + step * (product[1] + step * product[2])) / static_cast<double>(count);
@@ -101,22 +129,28 @@ void InteriorIterate::correct_centrality(SolveState& state) {
     kept_dlambda_ = state.dlambda;
     kept_course_ = course_;
     barrier_.keep_direction();
+    cones_.keep_direction();
     barrier_.correct(state, trial, low, high);
+    cones_.correct(state, trial, low, high);
     solve(state);
     if (course_.largest_step >= step + constants_.least_gain * (trial - step)) continue;
     state.dlambda = kept_dlambda_;
     course_ = kept_course_;
     barrier_.restore_direction();
+    cones_.restore_direction();
     return;
   }
 }
 
 void InteriorIterate::advance(SolveState& state, double step) {
   barrier_.advance(state, step);
+  cones_.advance(state, step);
   state.update_velocity();
+  state.update_shift();
 }
 
 double InteriorIterate::error(SolveState& state) {
+  if (cones_.product_count() > 0) return state.residual_of_cones();
   row_error_.resize(state.slack.size());
   const double worst = barrier_.error(state, row_error_);
   return std::max(worst, state.greatest_over_rows(
@@ -126,12 +160,15 @@ double InteriorIterate::error(SolveState& state) {
 void InteriorIterate::keep(const SolveState& state) {
   kept_impulse_ = state.impulse;
   barrier_.keep();
+  cones_.keep();
 }
 
 void InteriorIterate::restore(SolveState& state) {
   state.impulse = kept_impulse_;
   barrier_.restore();
+  cones_.restore();
   state.update_velocity();
+  state.update_shift();
 }
 
 }  // namespace cleave

@@ -2,8 +2,8 @@
 //
 //     min 1/2 lambda^T (J M^-1 J^T + C) lambda - (b - J v0)^T lambda,   lo <= lambda <= hi.
 //
-// Slacks and multipliers of the bounds, their part of D and of the right-hand side are interval_barrier.h's;
-// this file chooses what their products aim at and how far to step. D_r = 1 / (max(C_r, delta d_r) + sum z /
+// or with cones in the place of bounds. Slacks and multipliers of the bounds, their part of D and of the right-hand side are
+// interval_barrier.h's, those of the cones cone_barrier.h's; this file chooses what their products aim at and how far to step. D_r = 1 / (max(C_r, delta d_r) + sum z /
 // s), where delta keeps D of rows with next to no compliance within what double precision can factor; as
 // residuals are those of C, it changes the way and not the end. Source: Mehrotra, "On the implementation of a
 // primal-dual interior point method", SIAM J. Optim. 2, 1992; Gondzio, "Multiple centrality corrections in a
@@ -18,6 +18,8 @@
 #include <vector>
 
 #include "solver/solve_state.h"
+#include "solver/strategies/cone_barrier.h"
+#include "solver/strategies/coulomb_shift.h"
 #include "solver/strategies/interior_constants.h"
 #include "solver/strategies/interval_barrier.h"
 
@@ -39,6 +41,10 @@ class InteriorIterate {
   // products to first order. One back-substitution each.
   void find_direction(SolveState& state, Aim aim);
 
+  // Turns the direction into one of Coulomb's law (coulomb_shift.h): back-substitutions until the shift that it was found with
+  // and the one that it leads to differ by less than `tolerance`, m/s, or `most` of them.
+  void match_shift(SolveState& state, double tolerance, int most);
+
   // The largest residual of the direction in the rows of its own system, m/s: what rounding did to it.
   double rounding(SolveState& state);
 
@@ -51,7 +57,8 @@ class InteriorIterate {
   double mean_product(double step) const;  // of s z, after such a step
   void advance(SolveState& state, double step);
 
-  // The largest violation of the conditions as a velocity (m/s): of the equation in w, and min(d s, z).
+  // The largest violation of the conditions as a velocity (m/s): of the equation in w, and min(d s, z). With cones the
+  // residual, because their s and z may round more than the impulses do.
   double error(SolveState& state);
 
   // A row is at a bound where the multiplier outweighs the slack, else free.
@@ -64,15 +71,19 @@ class InteriorIterate {
  private:
   void choose_impulses(SolveState& state);
   void set_products(SolveState& state, Aim aim);
+  void right_hand_side(SolveState& state) const;
   void solve(SolveState& state);
 
   InteriorConstants constants_;
   IntervalBarrier barrier_;
+  ConeBarrier cones_;
+  CoulombShift shift_;
   BarrierCourse course_, kept_course_;  // of the direction
   double target_ = 0;                   // product that Mehrotra's direction aims at
   std::vector<double> kept_impulse_, kept_dlambda_;
   std::vector<double> row_speed_, row_error_;
-  std::vector<double> change_;  // (n, 6) M^-1 J^T dlambda
+  std::vector<double> change_;        // (n, 6) M^-1 J^T dlambda
+  std::vector<double> wanted_shift_;  // (cones)
 };
 
 }  // namespace cleave

@@ -5,12 +5,17 @@
 // factorisation, on more of them less; the corrections save a sixth of the iterations.
 //
 // Once the error is small the active set can be read off (s against z); an exact solve on that set then ends
-// the iteration with the accuracy of a pivoting method. Where the set is not yet right, the iteration goes
-// on, and where rounding keeps the set from ever being right, the best interior iterate is the answer if it
-// is within the limit.
+// the iteration with the accuracy of a pivoting method. Cones have no such set; cone_newton.h ends their iteration. Where the set
+// is not yet right, the iteration goes on, and where rounding keeps the set from ever being right, the best interior iterate is
+// the answer if it is within the limit.
+//
+// Under Coulomb's law every direction is that of the law (coulomb_shift.h). The problem is then not convex: where the iteration
+// stalls, status and residual say so.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "solver/strategies/cone_newton.h"
 #include "solver/strategies/interior_constants.h"
 #include "solver/strategies/interior_iterate.h"
 #include "solver/strategies/strategy.h"
@@ -18,17 +23,23 @@
 namespace cleave {
 namespace {
 
+// Of the change of Coulomb's shift in a direction: how exact, in units of the error that the direction is to remove, and the
+// most back-substitutions for it.
+constexpr double kShiftAccuracy = 0.1;
+constexpr int kMostShifts = 8;
+
 class InteriorPoint : public Strategy {
  public:
   explicit InteriorPoint(const InteriorConstants& constants) : constants_(constants), iterate_(constants) {}
   bool run(SolveState& state) override;
-  SetKind takes() const override { return SetKind::turned_boxes; }
+  SetKind takes() const override { return SetKind::cones; }
 
  private:
   enum class Progress { good, finished, rounding };
   void begin(SolveState& state);
   Progress watch(const SolveState& state, double error);
   bool polish(SolveState& state);
+  bool polish_cones(SolveState& state, double tolerance);
   void step(SolveState& state, double error);
   void adapt_delta(double rounding);
   bool raise_delta();
@@ -37,10 +48,12 @@ class InteriorPoint : public Strategy {
 
   InteriorConstants constants_;
   InteriorIterate iterate_;
+  ConeNewton newton_;
   std::vector<double> kept_impulse_;
   double best_error_ = 0, last_step_ = 1, polish_below_ = 0;
   int since_best_ = 0, grown_ = 0, raises_ = 0;
   double delta_ = 0, least_delta_ = 0, best_delta_ = 0;
+  bool has_coulomb_ = false;
   bool rounds_ = false;  // there are rows that delta may matter to
 };
 
@@ -74,10 +87,20 @@ void InteriorPoint::step(SolveState& state, double error) {
   iterate_.find_direction(state, Aim::affine);
   iterate_.find_direction(state, Aim::mehrotra);
   if (is_poor()) iterate_.find_direction(state, Aim::centre);
+  if (has_coulomb_) iterate_.match_shift(state, kShiftAccuracy * error, kMostShifts);
   iterate_.correct_centrality(state);
   if (rounds_) adapt_delta(iterate_.rounding(state) / error);
   last_step_ = std::min(1.0, constants_.step_fraction * iterate_.largest_step());
   iterate_.advance(state, last_step_);
+}
+
+// The semi-smooth Newton method from the interior iterate, which is restored on failure. It knows cones, not Coulomb's law.
+bool InteriorPoint::polish_cones(SolveState& state, double tolerance) {
+  if (has_coulomb_) return false;
+  if (newton_.run(state, tolerance) <= state.step->exact_limit_m_per_s()) return true;
+  state.impulse = kept_impulse_;
+  state.update_velocity();
+  return false;
 }
 
 // Reads the active set off the slacks and multipliers and solves on it exactly, flipping what is still wrong
@@ -88,6 +111,7 @@ bool InteriorPoint::polish(SolveState& state) {
   const Settling settling{constants_.polish_rounds, constants_.polish_refinements,
                           constants_.polish_violations, constants_.polish_violated_share};
   kept_impulse_ = state.impulse;
+  if (!state.step->set().cones().empty()) return polish_cones(state, tolerance);
   iterate_.read_active_set(state);
   if (state.settle(tolerance, settling) && state.residual() <= state.step->exact_limit_m_per_s()) return true;
   state.impulse = kept_impulse_;
@@ -123,13 +147,16 @@ double InteriorPoint::first_polish(double least_compliance) const {
 
 void InteriorPoint::begin(SolveState& state) {
   const double least = state.step->least_relative_compliance();
-  polish_below_ = first_polish(least) * state.step->velocity_scale();
+  const double first =
+      state.step->set().cones().empty() ? first_polish(least) : ConeNewton::first_residual(least);
+  polish_below_ = first * state.step->velocity_scale();
   delta_ = constants_.first_delta;
   best_delta_ = delta_;
   least_delta_ = constants_.least_delta;
   rounds_ = least < constants_.most_delta;
   best_error_ = std::numeric_limits<double>::infinity();
   since_best_ = grown_ = raises_ = 0;
+  has_coulomb_ = std::ranges::any_of(state.step->set().cones(), &FrictionCone::coulomb);
   iterate_.start(state);
 }
 

@@ -12,14 +12,24 @@ constexpr int kLanes = 4;  // running values side by side, for vector instructio
 
 }  // namespace
 
+BarrierCourse join_courses(std::span<const BarrierCourse> ranges) {
+  BarrierCourse course;
+  for (const BarrierCourse& part : ranges) {
+    course.largest_step = std::max(course.largest_step, part.largest_step);
+    for (int power = 0; power < 3; ++power) course.product[power] += part.product[power];
+  }
+  course.largest_step = 1 / course.largest_step;
+  return course;
+}
+
 void IntervalBarrier::add_pairs(SolveState& state, int r, double speed) {
   const StepProblem& problem = state.step->problem();
   const double d = state.step->diagonal()[r], w = state.slack[r];
   const double lower = problem.lower[r], upper = problem.upper[r], width = upper - lower;
   const double rounding = std::numeric_limits<double>::epsilon() * std::abs(lower);
-  fixed_[r] = d * width <= constants_.fixed_width_m_per_s ||
-              (std::isfinite(width) && width <= constants_.fixed_roundings * rounding);
-  if (fixed_[r]) {
+  if (d * width <= constants_.fixed_width_m_per_s ||
+      (std::isfinite(width) && width <= constants_.fixed_roundings * rounding)) {
+    use_[r] = RowUse::fixed;
     state.impulse[r] = 0.5 * (lower + upper);
     return;
   }
@@ -46,10 +56,12 @@ void IntervalBarrier::run_over_pairs(SolveState& state, const Task& task) const 
 void IntervalBarrier::start(SolveState& state, std::span<const double> speed) {
   pairs_.clear(), s_.clear(), z_.clear();
   pair_first_.clear();
-  fixed_.assign(speed.size(), false);
+  use_.assign(speed.size(), RowUse::bounded);
+  for (const FrictionCone& cone : state.step->set().cones())
+    std::fill_n(use_.begin() + cone.first_row, cone.row_count, RowUse::of_cone);
   for (std::size_t r = 0; r < speed.size(); ++r) {
     if (r % state.rows_of_a_range() == 0) pair_first_.push_back(static_cast<int>(pairs_.size()));
-    add_pairs(state, static_cast<int>(r), speed[r]);
+    if (!is_of_cone(r)) add_pairs(state, static_cast<int>(r), speed[r]);
   }
   pair_first_.push_back(static_cast<int>(pairs_.size()));
   for (std::vector<double>* v : {&now_.ds, &now_.dz, &now_.c, &inverse_s_, &inverse_z_, &gap_}) {
@@ -66,7 +78,7 @@ void IntervalBarrier::weigh(SolveState& state, std::span<double> weight) {
       gap_[k] = sign * (state.impulse[row] - bound) - s_[k];
       weight[row] += z_[k] * inverse_s_[k];
     }
-    for (int r = first; r < last; ++r) weight[r] = fixed_[r] ? 0.0 : 1 / weight[r];
+    for (int r = first; r < last; ++r) weight[r] = is_fixed(r) ? 0.0 : 1 / weight[r];
   });
 }
 
@@ -79,7 +91,7 @@ void IntervalBarrier::aim(SolveState& state, double product, bool second_order) 
 
 void IntervalBarrier::right_hand_side(SolveState& state) const {
   state.run_over_rows([&](int first, int last, int range) {
-    for (int r = first; r < last; ++r) state.f_r[r] = fixed_[r] ? 0.0 : -state.slack[r];
+    for (int r = first; r < last; ++r) state.f_r[r] = is_fixed(r) ? 0.0 : -state.slack[r];
     for (int k = pair_first_[range]; k < pair_first_[range + 1]; ++k) {
       state.f_r[pairs_[k].row] += pairs_[k].sign * (z_[k] + (now_.c[k] - z_[k] * gap_[k]) * inverse_s_[k]);
     }
@@ -115,13 +127,7 @@ BarrierCourse IntervalBarrier::follow(SolveState& state) {
   run_over_pairs(state, [&](int first, int last, int range) {
     follow_range(first, last, state.dlambda, courses_[range]);
   });
-  BarrierCourse course;
-  for (const BarrierCourse& part : courses_) {
-    course.largest_step = std::max(course.largest_step, part.largest_step);
-    for (int power = 0; power < 3; ++power) course.product[power] += part.product[power];
-  }
-  course.largest_step = 1 / course.largest_step;
-  return course;
+  return join_courses(courses_);
 }
 
 void IntervalBarrier::correct(SolveState& state, double trial, double low, double high) {
@@ -137,7 +143,7 @@ void IntervalBarrier::correct(SolveState& state, double trial, double low, doubl
 void IntervalBarrier::advance(SolveState& state, double step) {
   state.run_over_rows([&](int first, int last, int range) {
     for (int r = first; r < last; ++r) {
-      if (!fixed_[r]) state.impulse[r] += step * state.dlambda[r];
+      if (!is_fixed(r)) state.impulse[r] += step * state.dlambda[r];
     }
     for (int k = pair_first_[range]; k < pair_first_[range + 1]; ++k) {
       s_[k] += step * now_.ds[k];
@@ -160,8 +166,8 @@ double IntervalBarrier::error(SolveState& state, std::span<double> row_error) {
 }
 
 void IntervalBarrier::read_active_set(SolveState& state) const {
-  for (std::size_t r = 0; r < fixed_.size(); ++r) {
-    state.state[r] = fixed_[r] ? RowState::lower : RowState::free;
+  for (std::size_t r = 0; r < use_.size(); ++r) {
+    state.state[r] = is_fixed(r) ? RowState::lower : RowState::free;
   }
   for (std::size_t k = 0; k < pairs_.size(); ++k) {
     const auto [r, sign, bound] = pairs_[k];

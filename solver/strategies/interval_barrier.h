@@ -1,5 +1,4 @@
-// The barrier of the bounds along the axes of the impulse set: everything that the interior point asks of a
-// set.
+// The barrier of the bounds along the axes of the impulse set; contacts with a cone have cone_barrier.h's.
 //
 // Every finite bound beta of a row is a pair of a slack s and a multiplier z, both positive and kept as
 // variables (recomputing s from lambda loses all digits near the bound). With sigma = 1 for a lower and -1
@@ -17,9 +16,10 @@
 //
 // Loops over pairs are dealt out in the ranges of SolveState::run_over_rows; a row's pairs are of its range.
 //
-// Rows whose bounds coincide are fixed, with D = 0; unbounded rows have no pair.
+// Rows whose bounds coincide are fixed, with D = 0; unbounded rows and those of cones have no pair.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -35,6 +35,9 @@ struct BarrierCourse {
   double product[3] = {};
 };
 
+// Of the ranges of rows together; their largest steps are inverses.
+BarrierCourse join_courses(std::span<const BarrierCourse> ranges);
+
 class IntervalBarrier {
  public:
   explicit IntervalBarrier(const InteriorConstants& constants) : constants_(constants) {}
@@ -43,7 +46,8 @@ class IntervalBarrier {
   // are at least, m/s.
   void start(SolveState& state, std::span<const double> speed);
 
-  // weight (m): the compliance that is factored in, D out. Fixes s, z and gap for the directions that follow.
+  // weight (m): the compliance that is factored in, D out; on the rows of cones 1 / D in. Fixes s, z and gap for the
+  // directions that follow.
   void weigh(SolveState& state, std::span<double> weight);
 
   // Products s z that the direction aims at, less the second-order term of the last direction or not.
@@ -67,7 +71,8 @@ class IntervalBarrier {
   void keep() { kept_s_ = s_, kept_z_ = z_; }
   void restore() { s_ = kept_s_, z_ = kept_z_; }
 
-  bool is_fixed(std::size_t row) const { return fixed_[row]; }
+  bool is_fixed(std::size_t row) const { return use_[row] == RowUse::fixed; }
+  bool is_of_cone(std::size_t row) const { return use_[row] == RowUse::of_cone; }
   std::size_t product_count() const { return pairs_.size(); }
 
  private:
@@ -78,6 +83,7 @@ class IntervalBarrier {
   struct Direction {
     std::vector<double> ds, dz, c;
   };
+  enum class RowUse : std::uint8_t { bounded, fixed, of_cone };
 
   void add_pairs(SolveState& state, int row, double speed);
   template <class Task>
@@ -89,7 +95,7 @@ class IntervalBarrier {
   std::vector<int> pair_first_;         // (ranges + 1)
   std::vector<BarrierCourse> courses_;  // scratch: of the ranges, largest_step its inverse
   std::vector<double> worst_;           // scratch: of the ranges
-  std::vector<char> fixed_;             // (m)
+  std::vector<RowUse> use_;             // (m)
   std::vector<double> s_, z_;
   std::vector<double> inverse_s_, inverse_z_, gap_;  // of the iterate that was factored
   Direction now_, before_;

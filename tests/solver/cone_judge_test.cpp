@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "solver/residual.h"
+#include "tests/solver/cone_contacts.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/seeded_random.h"
 
@@ -17,37 +18,6 @@ namespace cleave {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-// One body of 1 kg and one contact at its centre, whose rows are the axes z, x, y.
-struct Block {
-  std::array<double, 3> free_velocity{};  // along the rows
-  std::array<double, 3> rhs{};
-  std::array<double, 3> compliance{};
-  double mu = 0.5;
-  ContactSet set = ContactSet::cone;
-  int tangents = 2;
-};
-
-StepProblem make_block(const Block& block) {
-  StepProblem problem;
-  problem.h_s = kTestStep_s;
-  append_body(problem, 1, {1, 1, 1},
-              {block.free_velocity[1], block.free_velocity[2], block.free_velocity[0], 0, 0, 0});
-  for (int k = 0; k <= block.tangents; ++k) {
-    RowSpec row;
-    row.jacobian_a[(k + 2) % 3] = 1;
-    row.rhs = block.rhs[k];
-    row.compliance = block.compliance[k];
-    row.kind = k == 0 ? RowKind::normal : RowKind::friction;
-    row.friction_row = k == 0 ? -1 : 0;
-    row.friction_coefficient = k == 0 ? 0 : block.mu;
-    if (k == 0) row.lower = 0;
-    append_row(problem, row);
-  }
-  problem.contact_set.assign(problem.row_count(), ContactSet::box);
-  problem.contact_set[0] = block.set;
-  return problem;
-}
 
 // The nearest point of { (n, t): |t| <= mu n }: with n chosen, t is shortened where it is too long, and what is left
 // to choose is one number, whose distance is convex.
@@ -107,26 +77,6 @@ TEST(ConeJudgeTest, AgreesWithAProjectionBySearch) {
   EXPECT_GT(inside, 200);
   EXPECT_GT(apart, 200);
   EXPECT_GT(surface, 200);
-}
-
-// A block pressed on the plane that slides at an angle to the tangents, or sticks: answers on paper.
-struct Paper {
-  StepProblem problem;
-  std::vector<double> impulse;
-};
-
-constexpr double kCompliance = 0.25, kPush = 0.5;  // the block would sink by kPush m/s
-
-Paper make_paper(ContactSet set, double angle, double speed, double mu = 0.5, int tangents = 2) {
-  const double c = tangents == 1 ? 1 : std::cos(angle), s = tangents == 1 ? 0 : std::sin(angle);
-  Block block{{-kPush, speed * c, speed * s}, {}, {kCompliance, kCompliance, kCompliance}, mu, set, tangents};
-  const double a = 1 + kCompliance;  // of every row: w = v0 + a lambda
-  double normal = kPush / a, friction = speed / a;
-  if (friction > mu * normal && set == ContactSet::cone) normal = (kPush + mu * speed) / (a * (1 + mu * mu));
-  friction = std::min(friction, mu * normal);
-  Paper paper{make_block(block), {normal, -friction * c, -friction * s}};
-  paper.impulse.resize(1 + tangents);
-  return paper;
 }
 
 TEST(ConeJudgeTest, AcceptsAnswersOnPaperAtEveryAngle) {
@@ -229,7 +179,9 @@ TEST(ConeJudgeTest, RowsOfBoxesBesideConesAreMeasuredAsBefore) {
                               of_mixed = row_residuals(mixed, impulse);
     double normal = 0, friction = 0;
     for (int r = 0; r < boxes.row_count(); ++r) {
-      if (r / 3 % 2 == 1) EXPECT_EQ(of_mixed[r], of_boxes[r]) << r;
+      if (r / 3 % 2 == 1) {
+        EXPECT_EQ(of_mixed[r], of_boxes[r]) << r;
+      }
       double& of_kind = boxes.row_kind[r] == RowKind::normal ? normal : friction;
       of_kind = std::max(of_kind, of_mixed[r]);
     }

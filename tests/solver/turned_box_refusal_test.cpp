@@ -1,11 +1,11 @@
 // Who takes no turned box refuses it by name.
 #include <gtest/gtest.h>
 
-#include <limits>
 #include <string>
 
 #include "solver/registry.h"
 #include "solver/step_solver.h"
+#include "tests/solver/cone_contacts.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/solver_checks.h"
 #include "tests/solver/turned_boxes.h"
@@ -53,25 +53,20 @@ TEST(TurnedBoxRefusalTest, EveryBaselineRefusesByName) {
   EXPECT_GE(refused, 1);
 }
 
-// No solver takes a cone: every one says so, by name, and leaves the impulses alone.
-TEST(ConeRefusalTest, EverySolverRefusesByName) {
-  StepProblem problem = make_turned_pile(1, 1e-1);
-  problem.box_angle_rad.clear();
-  problem.contact_set.assign(problem.row_count(), ContactSet::box);
-  for (int r = 0; r < problem.row_count(); ++r) {
-    const int normal = problem.friction_row[r];
-    if (normal < 0) continue;
-    problem.contact_set[normal] = ContactSet::cone;
-    problem.upper[r] = std::numeric_limits<double>::infinity();
-    problem.lower[r] = -problem.upper[r];
-  }
+// Whoever takes no cone says so, by name, and leaves the impulses alone.
+TEST(ConeRefusalTest, EveryOtherSolverRefusesByName) {
+  const StepProblem problem = make_cone_pile(1, 1e-1);
   ASSERT_EQ(find_problem_error(problem), "");
+  int refused = 0;
   for (const std::string& name : all_solver_names()) {
+    if (name == "exact" || name.starts_with("auto:") || name.starts_with("interior-point:")) continue;
     const Answer answer = solve(name, problem, single_part(problem.body_count()));
     EXPECT_EQ(answer.summary.status, SolveStatus::refused) << name;
     EXPECT_NE(answer.summary.message.find("contact_set["), std::string::npos) << answer.summary.message;
     EXPECT_TRUE(same_bytes(answer.solution.impulse, cold_start(problem).impulse)) << name;
+    ++refused;
   }
+  EXPECT_GE(refused, 20);
 }
 
 // A solver of another folder that says nothing about sets.

@@ -1,0 +1,123 @@
+#include "solver/strategies/cone_newton.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace cleave {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kMostSteps = 8;
+constexpr double kLeastFall = 0.5;  // of the residual in a step that is worth the next
+
+// By the least C_r / d_r, the residual in units of the velocity scale from where it was seen to converge: on piles of 60 to 600
+// rocks with cfm 1e-4 to 1e-14, attempts from ten times as much gained no factorisation or failed.
+constexpr double kSoftCompliance = 1e-4, kSoftResidual = 1e-6;
+constexpr double kFirmCompliance = 1e-9, kFirmResidual = 1e-8;
+constexpr double kRigidResidual = 1e-10;
+
+// The derivative of the projection on a cone: orthonormal eigenvectors, of which a contact with one tangent has the first two,
+// and their eigenvalues.
+struct Derivative {
+  std::array<Vector3d, 3> vector{Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
+  std::array<double, 3> theta{};
+};
+
+Derivative differentiate(double mu, const Vector3d& p) {
+  Derivative derivative;
+  const double t = tangential(p);
+  if (mu * t <= -p[0]) return derivative;
+  if (t <= mu * p[0]) {
+    derivative.theta = {1, 1, 1};
+    return derivative;
+  }
+  const Vector3d u(0, p[1] / t, p[2] / t);
+  const double length = std::hypot(1.0, mu);
+  derivative.vector = {(Vector3d::UnitX() + mu * u) / length, (mu * Vector3d::UnitX() - u) / length,
+                       Vector3d(0, -u[2], u[1])};
+  derivative.theta = {1, 0, mu * (p[0] + mu * t) / (length * length * t)};
+  return derivative;
+}
+
+}  // namespace
+
+// Weights of rows with bounds; theta = 0 sets the impulse to its bound. The rows of cones are linearize_cone's.
+void ConeNewton::linearize_rows(SolveState& state) const {
+  const StepProblem& problem = state.step->problem();
+  const std::span<const double> d = state.step->diagonal();
+  state.run_over_rows([&](int first, int last, int) {
+    for (int r = first; r < last; ++r) {
+      const double p = state.impulse[r] - state.slack[r] / d[r];
+      const bool is_free = problem.lower[r] < p && p < problem.upper[r];
+      state.weight[r] = is_free ? 1 / std::max(problem.compliance[r], kFactoredCompliance * d[r]) : 0.0;
+      if (!is_free) state.impulse[r] = std::clamp(p, problem.lower[r], problem.upper[r]);
+    }
+  });
+}
+
+void ConeNewton::linearize_cone(SolveState& state, int k) {
+  const FrictionCone& cone = state.step->set().cones()[k];
+  const double d = state.step->diagonal()[cone.first_row];
+  const Vector3d impulse = cone.load(impulse_before_), slack = cone.load(state.slack);
+  const Vector3d compliance = cone.load(state.step->problem().compliance);
+  const Vector3d apart = cone_residual(cone.mu, d, impulse, slack);
+  const Derivative at = differentiate(cone.mu, impulse - slack / d);
+  Vector3d wanted = slack, moved = impulse;
+  for (int i = 0; i < cone.row_count; ++i) {
+    const Vector3d& e = at.vector[i];
+    const double theta = at.theta[i];
+    std::copy_n(e.data(), cone.row_count, state.cone_blocks()[k].basis.data() + cone.row_count * i);
+    if (theta > 0) {
+      const double own = std::max(e.cwiseAbs2().dot(compliance), kFactoredCompliance * d);
+      state.weight[cone.first_row + i] = 1 / (own + d * (1 - theta) / theta);
+      wanted -= e.dot(apart) / theta * e;
+    } else {
+      state.weight[cone.first_row + i] = 0;
+      moved -= e.dot(apart) / d * e;
+    }
+  }
+  cone.store(wanted, wanted_);
+  cone.store(moved, state.impulse);
+}
+
+// False where the kernel finds a non-positive pivot.
+bool ConeNewton::step(SolveState& state) {
+  const std::span<const FrictionCone> cones = state.step->set().cones();
+  wanted_.assign(state.impulse.size(), 0.0);
+  impulse_before_ = state.impulse;
+  linearize_rows(state);
+  for (int k = 0; k < std::ssize(cones); ++k) linearize_cone(state, k);
+  state.update_velocity();
+  if (!state.factor()) return false;
+  std::ranges::fill(state.f_v, 0.0);
+  for (std::size_t r = 0; r < wanted_.size(); ++r) state.f_r[r] = wanted_[r] - state.slack[r];
+  state.solve();
+  for (std::size_t r = 0; r < wanted_.size(); ++r) state.impulse[r] += state.dlambda[r];
+  state.update_velocity();
+  ++state.summary->refinements;
+  return true;
+}
+
+double ConeNewton::first_residual(double least_compliance) {
+  return least_compliance >= kSoftCompliance   ? kSoftResidual
+         : least_compliance >= kFirmCompliance ? kFirmResidual
+                                               : kRigidResidual;
+}
+
+double ConeNewton::run(SolveState& state, double target) {
+  double least = state.residual_of_cones();
+  best_impulse_ = state.impulse;
+  for (int k = 0; k < kMostSteps && least > target && step(state); ++k) {
+    const double residual = state.residual_of_cones();
+    const double before = least;
+    if (residual < least) least = residual, best_impulse_ = state.impulse;
+    if (!(residual < kLeastFall * before)) break;
+  }
+  state.impulse = best_impulse_;
+  state.update_velocity();
+  return least;
+}
+
+}  // namespace cleave

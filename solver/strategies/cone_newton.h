@@ -1,0 +1,45 @@
+// The semi-smooth Newton method that ends the interior point where contacts have cones, whose curved surface leaves no active
+// set to read off.
+//
+// The conditions of all rows are F = lambda - P(lambda - w / d) = 0, with P the nearest point of the impulse set. The derivative
+// of P at p = lambda - w / d is symmetric; its eigenvectors e and eigenvalues theta are, with u = p_t / |p_t|,
+//
+//     a row with bounds      theta = 1 between them, 0 beyond
+//     a cone, p inside       theta = 1;   P(p) = 0: theta = 0
+//     a cone, p outside      theta = 1 along (1, mu u), mu P_n / |p_t| across u in the tangent plane, 0 along (mu, -u)
+//
+// Along e, a Newton step asks (1 - theta) dlambda_e + theta dw_e / d = -F_e. Directions of theta = 0 are moved by -F_e at once
+// (w then becomes w'), which leaves for the others rows of the kernel's system,
+//
+//     D_e^-1 = C + d (1 - theta) / theta,    f_e = -d F_e / theta - (w' - w)_e,
+//
+// exact where the rows of a contact have one compliance. Source: Qi and Sun, "A nonsmooth version of Newton's method", Math.
+// Program. 58, 1993; the derivative: Fukushima, Luo and Tseng, "Smoothing functions for second-order-cone complementarity
+// problems", SIAM J. Optim. 12, 2002.
+#pragma once
+
+#include <vector>
+
+#include "solver/solve_state.h"
+
+namespace cleave {
+
+class ConeNewton {
+ public:
+  // Steps from the present impulses, each counted as a refinement, until the residual is at most `target` (m/s) or a step does
+  // not at least halve it. Returns the least residual, whose impulses stay.
+  double run(SolveState& state, double target);
+
+  // Where an attempt is worth its factorisations: the residual in units of the velocity scale, by the least C_r / d_r.
+  static double first_residual(double least_compliance);
+
+ private:
+  bool step(SolveState& state);
+  void linearize_rows(SolveState& state) const;
+  void linearize_cone(SolveState& state, int k);
+
+  std::vector<double> wanted_;                         // (m) on the rows of cones, w - d F / theta
+  std::vector<double> impulse_before_, best_impulse_;  // (m)
+};
+
+}  // namespace cleave
