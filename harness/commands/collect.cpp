@@ -90,7 +90,7 @@ int collect(const CollectOptions& options) {
   long all = 0, incomplete = 0;
   for (const MeasuredCell& cell : cells) {
     const std::string prefix = csv_cell(cell.name) + "," + csv_cell(cell.manifest.cpu_model) + ",";
-    const auto add = [&](const std::string& line) { text += prefix + line + "\n", ++rows[cell.name]; };
+    const auto add = [&](const MeasuredRow& row) { text += prefix + row.line + "\n", ++rows[cell.name]; };
     const bool whole = visit_rows(cell, add);
     incomplete += !whole || cell.manifest.state != "complete";
     all += rows[cell.name];

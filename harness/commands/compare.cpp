@@ -46,9 +46,11 @@ int place_of(const std::string& option, const std::string& name) {
   return static_cast<int>(std::ranges::find(all, name, &Column::name) - all.begin());
 }
 
-// NaN for what was not measured.
-double number_in(const std::string& text) {
-  return text == "nan" || text == "-" || text == "-1" ? kUnmeasured : std::strtod(text.c_str(), nullptr);
+// NaN for what was not measured, which a column of integers says with -1.
+double number_in(const MeasuredRow& row, int place) {
+  static const std::vector<Column> all = columns();
+  const double value = number_of_cell(row.place, all[place].name, row.cells[place]);
+  return value == -1 && std::string_view(all[place].type) == "integer" ? kUnmeasured : value;
 }
 
 Campaign read_campaign(const std::string& directory, const std::vector<int>& by, int column) {
@@ -56,15 +58,15 @@ Campaign read_campaign(const std::string& directory, const std::vector<int>& by,
                    hash = place_of("", "solution_hash");
   Campaign campaign;
   for (const MeasuredCell& cell : find_measured_cells(std::span(&directory, 1)))
-    visit_rows(cell, [&](const std::string& line) {
-      const Texts cells = split_csv_line(line);
+    visit_rows(cell, [&](const MeasuredRow& row) {
+      const Texts& cells = row.cells;
       Texts key;
       for (const int place : by) key.push_back(cells[place]);
       StepValues& found = campaign[key][{cells[seed], cells[step]}];
       if (cells[status] != "ok") return;
       found.solved = true;
       found.solution_hash = cells[hash];
-      const double value = number_in(cells[column]);
+      const double value = number_in(row, column);
       if (std::isfinite(value)) found.values.push_back(value);
     });
   return campaign;

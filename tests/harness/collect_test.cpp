@@ -102,6 +102,53 @@ TEST_F(Campaigns, OfOtherColumnsAreRefusedByName) {
   EXPECT_FALSE(fs::exists(directory_ / "all.csv"));
 }
 
+TEST_F(Campaigns, WithALineOfOtherCellsAreRefusedByLine) {
+  const std::size_t columns = read_csv(steps("b", "cell1")).header.size();
+  for (const int more : {-40, -1, 1}) {
+    const std::size_t cells = columns + more;
+    edit_rows(steps("b", "cell1"), [&](CsvTable& table) { table.rows[3].resize(cells, "7"); });
+    const std::string wanted = "b/cell1/steps.csv: line 5 has " + std::to_string(cells) +
+                               " cells, allowed: " + std::to_string(columns) + "\n";
+    const ProgramResult compared = compare();
+    EXPECT_EQ(compared.exit_code, 1);
+    EXPECT_NE(compared.err.find(wanted), std::string::npos) << compared.err;
+    EXPECT_EQ(compared.out, "");
+    const ProgramResult collected =
+        run_cleave({"collect", directory_ / "b", "--out", directory_ / "all.csv"});
+    EXPECT_EQ(collected.exit_code, 1);
+    EXPECT_NE(collected.err.find(wanted), std::string::npos) << collected.err;
+    EXPECT_FALSE(fs::exists(directory_ / "all.csv"));
+  }
+}
+
+TEST_F(Campaigns, WithACellThatIsNoNumberAreRefusedByIt) {
+  for (const std::string text : {"abc", "12x", "", "-"}) {
+    edit_rows(steps("b", "cell1"), [&](CsvTable& table) {
+      set_column(table, "t_s_ms", [&](int row) { return row == 3 ? text : "10"; });
+    });
+    const ProgramResult result = compare();
+    EXPECT_EQ(result.exit_code, 1) << text;
+    EXPECT_NE(result.err.find("b/cell1/steps.csv: line 5: t_s_ms = '" + text + "', allowed: a number\n"),
+              std::string::npos)
+        << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+// -1 is "not measured" in a column of integers alone.
+TEST_F(Campaigns, MinusOneIsAValueOfAColumnOfNumbers) {
+  const auto steps_of = [&](const std::string& column) {
+    for (const char* campaign : {"a", "b"})
+      for (const char* cell : {"cell1", "cell2"})
+        edit_rows(steps(campaign, cell), [&](CsvTable& table) {
+          set_column(table, column, [](int row) { return row < 4 ? "-1" : "5"; });
+        });
+    return parse_csv(compare({"--column", column}).out).column("steps");
+  };
+  EXPECT_EQ(steps_of("potential_energy_j"), std::vector<std::string>(4, "6"));
+  EXPECT_EQ(steps_of("factorizations"), std::vector<std::string>(4, "4"));
+}
+
 TEST_F(Campaigns, ThatAreTheSameCompareAsSuch) {
   const ProgramResult result = compare();
   EXPECT_EQ(result.exit_code, 0) << result.err;
