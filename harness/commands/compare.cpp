@@ -143,6 +143,8 @@ int compare(const CompareOptions& options) {
   const Texts names = split_list(options.by);
   for (const std::string& name : names) by.push_back(place_of("--by", name));
   const Campaign a = read_campaign(options.a, by, column), b = read_campaign(options.b, by, column);
+  if (std::ranges::none_of(a, [&](const auto& entry) { return b.contains(entry.first); }))
+    throw std::invalid_argument("--by: no group of " + options.by + " is in both; name fewer columns");
   std::printf("%s,steps,lost,other_solutions,a,b,ratio,low,high,verdict\n", joined(names, ",").c_str());
   int groups = 0, regressions = 0;
   for (const auto& [key, group] : a) {
@@ -156,8 +158,6 @@ int compare(const CompareOptions& options) {
   };
   say(std::to_string(groups) + " groups in both, " + std::to_string(only(a, b)) + " in A alone, " +
       std::to_string(only(b, a)) + " in B alone; " + std::to_string(regressions) + " regressions");
-  if (groups == 0)
-    throw std::invalid_argument("--by: no group of " + options.by + " is in both; name fewer columns");
   return regressions > 0 ? kExitVerifyFailed : kExitOk;
 }
 

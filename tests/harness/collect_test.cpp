@@ -189,6 +189,17 @@ TEST_F(Campaigns, AStepThatWasSolvedAndIsNoMoreFails) {
   EXPECT_NE(result.out.find(",lost\n"), std::string::npos) << result.out;
 }
 
+TEST_F(Campaigns, WithoutACommonGroupPrintNoTable) {
+  edit_rows(steps("b", "cell1"), [](CsvTable& table) {
+    set_column(table, "partitioner", [](int) { return "other"; });
+  });
+  fs::remove_all(steps("b", "cell2").parent_path());
+  const ProgramResult result = compare({"--by", "partitioner"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.out, "");
+  EXPECT_NE(result.err.find("--by: no group of partitioner is in both"), std::string::npos) << result.err;
+}
+
 TEST_F(Campaigns, AreComparedByOtherColumnsAndNames) {
   const ProgramResult result = compare({"--by", "partitioner", "--column", "interface_rows"});
   EXPECT_EQ(parse_csv(result.out).column("partitioner"), (std::vector<std::string>{"mindp", "mix"}));
