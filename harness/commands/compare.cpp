@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "harness/base/hash.h"
+#include "harness/base/median.h"
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
 #include "harness/base/printable_text.h"
@@ -72,11 +73,6 @@ Campaign read_campaign(const std::string& directory, const std::vector<int>& by,
   return campaign;
 }
 
-double median_of(std::vector<double> values) {
-  std::ranges::sort(values);
-  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
-}
-
 // What became of one group.
 struct Comparison {
   std::vector<double> a, b;  // of the steps that both measured
@@ -94,8 +90,8 @@ Comparison compared(const Group& a, const Group& b) {
     if (!of_b.solved) continue;
     result.other_solutions += of_a.solution_hash != of_b.solution_hash;
     if (of_a.values.empty() || of_b.values.empty()) continue;
-    result.a.push_back(median_of(of_a.values));
-    result.b.push_back(median_of(of_b.values));
+    result.a.push_back(median(of_a.values));
+    result.b.push_back(median(of_b.values));
   }
   return result;
 }
@@ -119,7 +115,7 @@ bool print_group(const Texts& key, const Comparison& group, double allow) {
   double a = kUnmeasured, b = kUnmeasured;
   if (!group.a.empty()) {
     interval = ratio_interval(group.a, group.b, seed_of(key));
-    a = median_of(group.a), b = median_of(group.b);
+    a = median(group.a), b = median(group.b);
   }
   std::string line;
   for (const std::string& cell : key) line += csv_cell(cell) + ",";
