@@ -9,6 +9,7 @@
 
 #include "harness/base/names.h"
 #include "harness/base/printable_text.h"
+#include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
 #include "harness/commands/measured_cells.h"
 #include "harness/experiment/step_record.h"
@@ -71,17 +72,11 @@ std::string table_of_columns() {
   return text;
 }
 
-void check_out(const fs::path& path, bool force) {
-  if (fs::exists(path) && !force)
-    throw std::invalid_argument("--out: " + path.string() + " exists; name another file or give --force");
-}
-
 int collect(const CollectOptions& options) {
   if (options.directories.empty()) throw std::invalid_argument("DIR: an output directory is required");
-  if (options.out.empty()) throw std::invalid_argument("--out: is required: the file to write");
   const fs::path out = options.out;
   for (const fs::path& path : {out, beside(out, "cells"), beside(out, "columns")})
-    check_out(path, options.force);
+    check_out_file(path, options.force);
   const std::vector<MeasuredCell> cells = find_measured_cells(options.directories);
   std::string text;
   for (const auto& entry : kBefore) text += std::string(entry[0]) + ",";
