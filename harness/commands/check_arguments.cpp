@@ -64,7 +64,8 @@ void check_arguments(const CLI::App& command, std::span<const std::string> argum
 
 void check_out_file(const std::string& out, bool force) {
   if (out.empty()) reject("--out: is required: the file to write");
-  if (std::filesystem::exists(out) && !force)
+  std::error_code ignored;  // a name that cannot be looked at cannot be written either, and that says why
+  if (std::filesystem::exists(out, ignored) && !force)
     reject("--out: " + out + " exists; name another file or give --force");
 }
 

@@ -90,9 +90,9 @@ int collect(const CollectOptions& options) {
     incomplete += !whole || cell.manifest.state != "complete";
     all += rows[cell.name];
   }
-  write_whole_file(beside(out, "columns"), table_of_columns());
-  write_whole_file(beside(out, "cells"), table_of_cells(cells, rows));
-  write_whole_file(out, text);
+  const std::string table = table_of_cells(cells, rows), of_columns = table_of_columns();
+  write_whole_files(std::vector<NamedBytes>{
+      {beside(out, "columns"), of_columns}, {beside(out, "cells"), table}, {out, text}});
   say(options.out + ": " + std::to_string(all) + " rows of " + std::to_string(cells.size()) +
       " output directories" +
       (incomplete > 0 ? ", " + std::to_string(incomplete) + " of them incomplete" : ""));

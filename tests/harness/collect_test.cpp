@@ -190,9 +190,8 @@ TEST_F(Campaigns, AStepThatWasSolvedAndIsNoMoreFails) {
 }
 
 TEST_F(Campaigns, WithoutACommonGroupPrintNoTable) {
-  edit_rows(steps("b", "cell1"), [](CsvTable& table) {
-    set_column(table, "partitioner", [](int) { return "other"; });
-  });
+  edit_rows(steps("b", "cell1"),
+            [](CsvTable& table) { set_column(table, "partitioner", [](int) { return "other"; }); });
   fs::remove_all(steps("b", "cell2").parent_path());
   const ProgramResult result = compare({"--by", "partitioner"});
   EXPECT_EQ(result.exit_code, 1);
