@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
@@ -26,6 +27,7 @@ RatioInterval ratio_interval(std::span<const double> a, std::span<const double> 
     }
     ratios.push_back(median_in_place(of_b) / median_in_place(of_a));
   }
+  if (std::ranges::any_of(ratios, [](double ratio) { return std::isnan(ratio); })) return interval;
   std::ranges::sort(ratios);
   interval.low = ratios[kResamples / 40];
   interval.high = ratios[kResamples - 1 - kResamples / 40];

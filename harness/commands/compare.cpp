@@ -123,7 +123,7 @@ bool print_group(const Texts& key, const Comparison& group, double allow) {
           std::to_string(group.other_solutions);
   for (const double value : {a, b, interval.ratio, interval.low, interval.high})
     line += "," + number_text(value);
-  std::printf("%s,%s\n", line.c_str(), group.lost > 0 ? "lost" : verdict_of(interval));
+  std::printf("%s,%s\n", line.c_str(), group.lost > 0 ? "lost" : verdict_of(interval, group.a.size()));
   return group.lost > 0 || interval.low > 1 + allow;
 }
 
@@ -137,7 +137,11 @@ int compare(const CompareOptions& options) {
                                 " holds text; allowed is a column of numbers");
   std::vector<int> by;
   const Texts names = split_list(options.by);
-  for (const std::string& name : names) by.push_back(place_of("--by", name));
+  for (const std::string& name : names) {
+    by.push_back(place_of("--by", name));
+    if (std::ranges::count(names, name) > 1)
+      throw std::invalid_argument("--by: " + name + " is given twice; name every column once");
+  }
   const Campaign a = read_campaign(options.a, by, column), b = read_campaign(options.b, by, column);
   if (std::ranges::none_of(a, [&](const auto& entry) { return b.contains(entry.first); }))
     throw std::invalid_argument("--by: no group of " + options.by + " is in both; name fewer columns");

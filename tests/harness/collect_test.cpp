@@ -232,5 +232,13 @@ TEST(RatioInterval, IsOfMedians) {
   EXPECT_TRUE(std::isnan(few.low) && std::isnan(few.high));
 }
 
+// Where half of the pairs are 0, so are both medians of some resamples.
+TEST(RatioInterval, IsNoneWhereResamplesHaveNoRatio) {
+  const std::vector<double> a = {0, 0, 0, 1, 2, 3, 4};
+  const RatioInterval interval = ratio_interval(a, a, 1);
+  EXPECT_EQ(interval.ratio, 1);
+  EXPECT_TRUE(std::isnan(interval.low) && std::isnan(interval.high));
+}
+
 }  // namespace
 }  // namespace cleave
