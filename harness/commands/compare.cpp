@@ -103,9 +103,10 @@ std::uint64_t seed_of(const Texts& key) {
   return hash.value();
 }
 
-const char* verdict_of(const RatioInterval& interval) {
+const char* verdict_of(const RatioInterval& interval, std::size_t steps) {
   if (std::isnan(interval.ratio)) return "undecided";  // nothing in common, or both are 0
-  if (std::isnan(interval.low)) return "too-few-steps";
+  if (steps < kFewestPairs) return "too-few-steps";
+  if (std::isnan(interval.low)) return "undecided";  // both are 0 on many steps
   return interval.low > 1 ? "slower" : interval.high < 1 ? "faster" : "same";
 }
 

@@ -199,10 +199,33 @@ TEST_F(Campaigns, WithoutACommonGroupPrintNoTable) {
   EXPECT_NE(result.err.find("--by: no group of partitioner is in both"), std::string::npos) << result.err;
 }
 
+// What was there before stays, all three of it; nothing new is left.
+TEST_F(Campaigns, AreCollectedIntoAllTablesOrNone) {
+  const fs::path folder = directory_ / "tables";
+  fs::create_directories(folder / "all.csv");
+  for (const char* name : {"all.cells.csv", "all.columns.csv"}) std::ofstream(folder / name) << "earlier";
+  const ProgramResult result =
+      run_cleave({"collect", directory_ / "a", "--out", folder / "all.csv", "--force"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("all.csv: cannot be written: Is a directory"), std::string::npos) << result.err;
+  for (const char* name : {"all.cells.csv", "all.columns.csv"})
+    EXPECT_EQ(read_text(folder / name), "earlier");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 3);
+}
+
+TEST_F(Campaigns, WithANameThatIsTooLongAreRefusedByIt) {
+  const std::string name(300, 'x');
+  const ProgramResult result = run_cleave({"collect", directory_ / "a", "--out", directory_ / name});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find(": cannot be written: File name too long"), std::string::npos) << result.err;
+}
+
 TEST_F(Campaigns, AreComparedByOtherColumnsAndNames) {
   const ProgramResult result = compare({"--by", "partitioner", "--column", "interface_rows"});
   EXPECT_EQ(parse_csv(result.out).column("partitioner"), (std::vector<std::string>{"mindp", "mix"}));
   EXPECT_NE(compare({"--by", "partitionr"}).err.find("did you mean 'partitioner'?"), std::string::npos);
+  EXPECT_NE(compare({"--by", "step,partitioner,step"}).err.find("--by: step is given twice"),
+            std::string::npos);
   EXPECT_NE(compare({"--column", "status"}).err.find("holds text"), std::string::npos);
   EXPECT_NE(compare({"--allow", "-1"}).err.find("--allow: -1 is not in"), std::string::npos);
   EXPECT_EQ(run_cleave({"compare", directory_ / "a"}).exit_code, 1);
@@ -226,9 +249,9 @@ TEST(RatioInterval, HoldsTheRatioAndIsOfItsPairs) {
 
 // An even number, by hand; four pairs are too few.
 TEST(RatioInterval, IsOfMedians) {
-  const std::vector<double> a = {1, 2, 3, 100}, b = {4, 6, 1, 1000};
+  const std::vector<double> a = {1, 2, 3, 100}, b = {4, 7, 1, 1000};
   const RatioInterval few = ratio_interval(a, b, 1);
-  EXPECT_DOUBLE_EQ(few.ratio, 5 / 2.5);
+  EXPECT_DOUBLE_EQ(few.ratio, 5.5 / 2.5);  // 2 and 7 / 3 of the lower and the upper middle
   EXPECT_TRUE(std::isnan(few.low) && std::isnan(few.high));
 }
 
