@@ -91,11 +91,18 @@ class BreadthFirst final : public Partitioner {
   int max_bodies_;
 };
 
+bool is_chopped(const Settings& settings) { return settings.text("restart") == "graph"; }
+
 }  // namespace
+
+// Of parts that are cut from one order of all bodies only the size is known.
+PartsPromise bfs_promise_with(const PartsPromise& promise, const Settings& settings) {
+  return is_chopped(settings) ? PartsPromise{.at_most_max_bodies = true} : promise;
+}
 
 std::unique_ptr<Partitioner> make_bfs(const Settings& settings) {
   const int max_bodies = settings.integer("max-bodies");
-  if (settings.text("restart") == "graph") return std::make_unique<ChoppedOrder>(max_bodies);
+  if (is_chopped(settings)) return std::make_unique<ChoppedOrder>(max_bodies);
   return std::make_unique<BreadthFirst>(max_bodies);
 }
 

@@ -14,6 +14,7 @@ namespace cleave {
 std::unique_ptr<Partitioner> make_mindp(const Settings& settings);
 std::unique_ptr<Partitioner> make_maxdp(const Settings& settings);
 std::unique_ptr<Partitioner> make_bfs(const Settings& settings);
+PartsPromise bfs_promise_with(const PartsPromise& promise, const Settings& settings);
 std::unique_ptr<Partitioner> make_mass_ratio(const Settings& settings);
 std::unique_ptr<Partitioner> make_mix(const Settings& settings);
 std::unique_ptr<Partitioner> make_multilevel(const Settings& settings);
@@ -117,7 +118,9 @@ std::span<const PartitionerEntry> partitioners() {
          merge_small()}},
        kGrown,
        true,
-       make_bfs},
+       make_bfs,
+       false,
+       bfs_promise_with},
       {{"mr",
         "grow by bodies whose mass ratio stays below tau-mr",
         kGrowing,
@@ -287,16 +290,6 @@ std::span<const RefinerEntry> refiners() {
   return table;
 }
 
-namespace {
-
-// Of parts that are cut from one order of all bodies only the size is known.
-PartsPromise promise_of(const PartitionerEntry& entry, const Settings& settings) {
-  const bool is_chopped = settings.has("restart") && settings.text("restart") == "graph";
-  return is_chopped ? PartsPromise{.at_most_max_bodies = true} : entry.promise;
-}
-
-}  // namespace
-
 std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm) {
   const PartitionerEntry& entry = find_row(partitioners(), "partitioner", algorithm.name);
   check_available("partitioner", entry);
@@ -306,7 +299,8 @@ std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm) {
   if (settings.has("max-bodies")) max_bodies = settings.integer("max-bodies");
   if (max_bodies && settings.has("max-growth"))
     grown_bodies = most_grown_bodies(*max_bodies, settings.number("max-growth"));
-  const PartsPromise promise = promise_of(entry, settings);
+  const PartsPromise promise =
+      entry.promise_with ? entry.promise_with(entry.promise, settings) : entry.promise;
   made->promise(promise, max_bodies, grown_bodies);
   if (!settings.has("merge-small") || !settings.flag("merge-small")) return made;
   made = merge_small(std::move(made), *max_bodies);

@@ -2,29 +2,20 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
 
+#include "harness/base/median.h"
+
 namespace cleave {
-namespace {
-
-// Of an even number the mean of the middle two; reorders values.
-double median(std::vector<double>& values) {
-  const std::size_t middle = values.size() / 2;
-  std::ranges::nth_element(values, values.begin() + middle);
-  const double upper = values[middle];
-  if (values.size() % 2 == 1) return upper;
-  return (upper + *std::max_element(values.begin(), values.begin() + middle)) / 2;
-}
-
-}  // namespace
 
 RatioInterval ratio_interval(std::span<const double> a, std::span<const double> b, std::uint64_t seed) {
   assert(a.size() == b.size() && !a.empty());
   std::vector<double> of_a(a.begin(), a.end()), of_b(b.begin(), b.end());
-  RatioInterval interval{median(of_b) / median(of_a), std::numeric_limits<double>::quiet_NaN(),
-                         std::numeric_limits<double>::quiet_NaN()};
+  RatioInterval interval{median_in_place(of_b) / median_in_place(of_a),
+                         std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
   if (a.size() < kFewestPairs) return interval;
   std::mt19937_64 engine(seed);
   std::vector<double> ratios;
@@ -34,8 +25,9 @@ RatioInterval ratio_interval(std::span<const double> a, std::span<const double> 
       of_a[i] = a[drawn];
       of_b[i] = b[drawn];
     }
-    ratios.push_back(median(of_b) / median(of_a));
+    ratios.push_back(median_in_place(of_b) / median_in_place(of_a));
   }
+  if (std::ranges::any_of(ratios, [](double ratio) { return std::isnan(ratio); })) return interval;
   std::ranges::sort(ratios);
   interval.low = ratios[kResamples / 40];
   interval.high = ratios[kResamples - 1 - kResamples / 40];

@@ -8,8 +8,10 @@
 namespace cleave {
 
 struct RatioInterval {
-  double ratio = 0;          // median of b over median of a
-  double low = 0, high = 0;  // 95 % of the resamples lie within; NaN for fewer than kFewestPairs
+  double ratio = 0;  // median of b over median of a
+  double low = 0,
+         high =
+             0;  // 95 % of the resamples lie within; NaN for fewer than kFewestPairs, or where one is 0 / 0
 };
 
 inline constexpr int kFewestPairs = 5;

@@ -5,7 +5,6 @@
 // fit has not seen. Solves that handed over to another strategy are left out of both, because they mix passes of two kinds.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <set>
 #include <stdexcept>
@@ -15,6 +14,7 @@
 #include "harness/base/printable_text.h"
 #include "harness/base/progress.h"
 #include "harness/commands/calibration_problems.h"
+#include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
 #include "harness/experiment/combination.h"
 #include "harness/experiment/cost_fit.h"
@@ -26,8 +26,6 @@
 
 namespace cleave {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct CalibrateOptions {
   std::vector<std::string> files;
@@ -177,9 +175,7 @@ std::vector<std::pair<std::string, std::string>> about_this(const std::vector<st
 }
 
 int calibrate(const CalibrateOptions& options, const std::vector<std::string>& argv) {
-  if (options.out.empty()) throw std::invalid_argument("--out: is required: the file to write");
-  if (fs::exists(options.out) && !options.force)
-    throw std::invalid_argument("--out: " + options.out + " exists; name another file or give --force");
+  check_out_file(options.out, options.force);
   const std::uint64_t seed = parse_seed("--seed", options.seed);
   solve_options(1, options.repeats);  // whether --repeats is a number
   auto about = about_this(argv, options);

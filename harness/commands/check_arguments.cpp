@@ -1,6 +1,7 @@
 #include "harness/commands/check_arguments.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 #include <stdexcept>
 #include <vector>
@@ -59,6 +60,13 @@ void check_arguments(const CLI::App& command, std::span<const std::string> argum
     const std::string* next = i + 1 < arguments.size() ? &arguments[i + 1] : nullptr;
     if (check_option(*option, argument, next)) ++i;
   }
+}
+
+void check_out_file(const std::string& out, bool force) {
+  if (out.empty()) reject("--out: is required: the file to write");
+  std::error_code ignored;  // a name that cannot be looked at cannot be written either, and that says why
+  if (std::filesystem::exists(out, ignored) && !force)
+    reject("--out: " + out + " exists; name another file or give --force");
 }
 
 void reject_extras(const CLI::App& app) {

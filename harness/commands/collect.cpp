@@ -9,6 +9,7 @@
 
 #include "harness/base/names.h"
 #include "harness/base/printable_text.h"
+#include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
 #include "harness/commands/measured_cells.h"
 #include "harness/experiment/step_record.h"
@@ -71,17 +72,11 @@ std::string table_of_columns() {
   return text;
 }
 
-void check_out(const fs::path& path, bool force) {
-  if (fs::exists(path) && !force)
-    throw std::invalid_argument("--out: " + path.string() + " exists; name another file or give --force");
-}
-
 int collect(const CollectOptions& options) {
   if (options.directories.empty()) throw std::invalid_argument("DIR: an output directory is required");
-  if (options.out.empty()) throw std::invalid_argument("--out: is required: the file to write");
   const fs::path out = options.out;
   for (const fs::path& path : {out, beside(out, "cells"), beside(out, "columns")})
-    check_out(path, options.force);
+    check_out_file(path, options.force);
   const std::vector<MeasuredCell> cells = find_measured_cells(options.directories);
   std::string text;
   for (const auto& entry : kBefore) text += std::string(entry[0]) + ",";
@@ -90,14 +85,14 @@ int collect(const CollectOptions& options) {
   long all = 0, incomplete = 0;
   for (const MeasuredCell& cell : cells) {
     const std::string prefix = csv_cell(cell.name) + "," + csv_cell(cell.manifest.cpu_model) + ",";
-    const auto add = [&](const std::string& line) { text += prefix + line + "\n", ++rows[cell.name]; };
+    const auto add = [&](const MeasuredRow& row) { text += prefix + row.line + "\n", ++rows[cell.name]; };
     const bool whole = visit_rows(cell, add);
     incomplete += !whole || cell.manifest.state != "complete";
     all += rows[cell.name];
   }
-  write_whole_file(beside(out, "columns"), table_of_columns());
-  write_whole_file(beside(out, "cells"), table_of_cells(cells, rows));
-  write_whole_file(out, text);
+  const std::string table = table_of_cells(cells, rows), of_columns = table_of_columns();
+  write_whole_files(std::vector<NamedBytes>{
+      {beside(out, "columns"), of_columns}, {beside(out, "cells"), table}, {out, text}});
   say(options.out + ": " + std::to_string(all) + " rows of " + std::to_string(cells.size()) +
       " output directories" +
       (incomplete > 0 ? ", " + std::to_string(incomplete) + " of them incomplete" : ""));

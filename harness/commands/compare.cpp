@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "harness/base/hash.h"
+#include "harness/base/median.h"
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
 #include "harness/base/printable_text.h"
@@ -46,9 +47,11 @@ int place_of(const std::string& option, const std::string& name) {
   return static_cast<int>(std::ranges::find(all, name, &Column::name) - all.begin());
 }
 
-// NaN for what was not measured.
-double number_in(const std::string& text) {
-  return text == "nan" || text == "-" || text == "-1" ? kUnmeasured : std::strtod(text.c_str(), nullptr);
+// NaN for what was not measured, which a column of integers says with -1.
+double number_in(const MeasuredRow& row, int place) {
+  static const std::vector<Column> all = columns();
+  const double value = number_of_cell(row.place, all[place].name, row.cells[place]);
+  return value == -1 && std::string_view(all[place].type) == "integer" ? kUnmeasured : value;
 }
 
 Campaign read_campaign(const std::string& directory, const std::vector<int>& by, int column) {
@@ -56,23 +59,18 @@ Campaign read_campaign(const std::string& directory, const std::vector<int>& by,
                    hash = place_of("", "solution_hash");
   Campaign campaign;
   for (const MeasuredCell& cell : find_measured_cells(std::span(&directory, 1)))
-    visit_rows(cell, [&](const std::string& line) {
-      const Texts cells = split_csv_line(line);
+    visit_rows(cell, [&](const MeasuredRow& row) {
+      const Texts& cells = row.cells;
       Texts key;
       for (const int place : by) key.push_back(cells[place]);
       StepValues& found = campaign[key][{cells[seed], cells[step]}];
       if (cells[status] != "ok") return;
       found.solved = true;
       found.solution_hash = cells[hash];
-      const double value = number_in(cells[column]);
+      const double value = number_in(row, column);
       if (std::isfinite(value)) found.values.push_back(value);
     });
   return campaign;
-}
-
-double median_of(std::vector<double> values) {
-  std::ranges::sort(values);
-  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
 }
 
 // What became of one group.
@@ -92,8 +90,8 @@ Comparison compared(const Group& a, const Group& b) {
     if (!of_b.solved) continue;
     result.other_solutions += of_a.solution_hash != of_b.solution_hash;
     if (of_a.values.empty() || of_b.values.empty()) continue;
-    result.a.push_back(median_of(of_a.values));
-    result.b.push_back(median_of(of_b.values));
+    result.a.push_back(median(of_a.values));
+    result.b.push_back(median(of_b.values));
   }
   return result;
 }
@@ -105,9 +103,10 @@ std::uint64_t seed_of(const Texts& key) {
   return hash.value();
 }
 
-const char* verdict_of(const RatioInterval& interval) {
+const char* verdict_of(const RatioInterval& interval, std::size_t steps) {
   if (std::isnan(interval.ratio)) return "undecided";  // nothing in common, or both are 0
-  if (std::isnan(interval.low)) return "too-few-steps";
+  if (steps < kFewestPairs) return "too-few-steps";
+  if (std::isnan(interval.low)) return "undecided";  // both are 0 on many steps
   return interval.low > 1 ? "slower" : interval.high < 1 ? "faster" : "same";
 }
 
@@ -117,7 +116,7 @@ bool print_group(const Texts& key, const Comparison& group, double allow) {
   double a = kUnmeasured, b = kUnmeasured;
   if (!group.a.empty()) {
     interval = ratio_interval(group.a, group.b, seed_of(key));
-    a = median_of(group.a), b = median_of(group.b);
+    a = median(group.a), b = median(group.b);
   }
   std::string line;
   for (const std::string& cell : key) line += csv_cell(cell) + ",";
@@ -125,7 +124,7 @@ bool print_group(const Texts& key, const Comparison& group, double allow) {
           std::to_string(group.other_solutions);
   for (const double value : {a, b, interval.ratio, interval.low, interval.high})
     line += "," + number_text(value);
-  std::printf("%s,%s\n", line.c_str(), group.lost > 0 ? "lost" : verdict_of(interval));
+  std::printf("%s,%s\n", line.c_str(), group.lost > 0 ? "lost" : verdict_of(interval, group.a.size()));
   return group.lost > 0 || interval.low > 1 + allow;
 }
 
@@ -139,8 +138,14 @@ int compare(const CompareOptions& options) {
                                 " holds text; allowed is a column of numbers");
   std::vector<int> by;
   const Texts names = split_list(options.by);
-  for (const std::string& name : names) by.push_back(place_of("--by", name));
+  for (const std::string& name : names) {
+    by.push_back(place_of("--by", name));
+    if (std::ranges::count(names, name) > 1)
+      throw std::invalid_argument("--by: " + name + " is given twice; name every column once");
+  }
   const Campaign a = read_campaign(options.a, by, column), b = read_campaign(options.b, by, column);
+  if (std::ranges::none_of(a, [&](const auto& entry) { return b.contains(entry.first); }))
+    throw std::invalid_argument("--by: no group of " + options.by + " is in both; name fewer columns");
   std::printf("%s,steps,lost,other_solutions,a,b,ratio,low,high,verdict\n", joined(names, ",").c_str());
   int groups = 0, regressions = 0;
   for (const auto& [key, group] : a) {
@@ -154,8 +159,6 @@ int compare(const CompareOptions& options) {
   };
   say(std::to_string(groups) + " groups in both, " + std::to_string(only(a, b)) + " in A alone, " +
       std::to_string(only(b, a)) + " in B alone; " + std::to_string(regressions) + " regressions");
-  if (groups == 0)
-    throw std::invalid_argument("--by: no group of " + options.by + " is in both; name fewer columns");
   return regressions > 0 ? kExitVerifyFailed : kExitOk;
 }
 

@@ -1,7 +1,6 @@
 // cleave export: the body graph or a matrix of a recorded problem as a file that other programs read.
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -12,6 +11,7 @@
 
 #include "harness/base/names.h"
 #include "harness/base/printable_text.h"
+#include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
 #include "harness/experiment/problem_graph.h"
 #include "harness/files/matrix_market.h"
@@ -20,8 +20,6 @@
 
 namespace cleave {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct ExportOptions {
   std::string file, format, out;
@@ -85,9 +83,7 @@ const ExportFormat& read_format(const ExportOptions& options) {
 int export_problem(const ExportOptions& options) {
   if (options.file.empty()) throw std::invalid_argument("FILE: a problem file is required");
   const ExportFormat& format = read_format(options);
-  if (options.out.empty()) throw std::invalid_argument("--out: is required: the file to write");
-  if (fs::exists(options.out) && !options.force)
-    throw std::invalid_argument("--out: " + options.out + " exists; name another file or give --force");
+  check_out_file(options.out, options.force);
   const ProblemFile file = read_problem_file_aloud(options.file);
   write_whole_file(options.out, format.text(file, options));
   const BodyGraph graph = body_graph_of(file.problem, file.step);

@@ -5,6 +5,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "harness/commands/verify_table.h"
 #include "harness/experiment/step_record.h"
 #include "harness/files/manifest.h"
 
@@ -47,7 +48,7 @@ std::vector<MeasuredCell> find_measured_cells(std::span<const std::string> direc
   return cells;
 }
 
-bool visit_rows(const MeasuredCell& cell, const std::function<void(const std::string& line)>& visit) {
+bool visit_rows(const MeasuredCell& cell, const std::function<void(const MeasuredRow& row)>& visit) {
   static const std::string header = csv_header();
   const fs::path path = cell.directory / kStepsFile;
   std::ifstream file(path, std::ios::binary);
@@ -55,9 +56,12 @@ bool visit_rows(const MeasuredCell& cell, const std::function<void(const std::st
   if (!std::getline(file, line) || line + "\n" != header)
     throw std::invalid_argument(path.string() + ": its columns are not those of " + kStepsSchema +
                                 "; was it written by another version?");
-  while (std::getline(file, line)) {
+  const std::size_t columns = split_csv_line(line).size();
+  for (std::size_t row = 0; std::getline(file, line); ++row) {
     if (file.eof()) return false;
-    visit(line);
+    const MeasuredRow found = {line, split_csv_line(line), path.string() + ": " + StepsTable::line_of(row)};
+    check_cell_count(found.place, found.cells.size(), columns);
+    visit(found);
   }
   return true;
 }

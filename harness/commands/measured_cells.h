@@ -22,9 +22,15 @@ struct MeasuredCell {
 // holds no cell, one that is asked for twice, a manifest that cannot be read.
 std::vector<MeasuredCell> find_measured_cells(std::span<const std::string> directories);
 
-// Calls visit(line, without its end) for every row of the cell's steps.csv. Whatever the run did not come to write whole is
-// left out: returns false then. Throws std::invalid_argument naming the file where its columns are not those that
-// this program writes.
-bool visit_rows(const MeasuredCell& cell, const std::function<void(const std::string& line)>& visit);
+struct MeasuredRow {
+  std::string line;                // without its end
+  std::vector<std::string> cells;  // one a column of columns()
+  std::string place;               // "FILE: line 7"
+};
+
+// Calls visit for every row of the cell's steps.csv. Whatever the run did not come to write whole is left out: returns false
+// then. Throws std::invalid_argument naming the file where its columns are not those that this program writes, and the
+// line where it has another number of cells.
+bool visit_rows(const MeasuredCell& cell, const std::function<void(const MeasuredRow& row)>& visit);
 
 }  // namespace cleave

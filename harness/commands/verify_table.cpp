@@ -25,6 +25,20 @@ std::vector<std::string> split_csv_line(const std::string& line) {
   return cells;
 }
 
+void check_cell_count(const std::string& place, std::size_t cells, std::size_t columns) {
+  if (cells != columns)
+    throw std::invalid_argument(place + " has " + std::to_string(cells) +
+                                " cells, allowed: " + std::to_string(columns));
+}
+
+double number_of_cell(const std::string& place, const std::string& column, const std::string& text) {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size())
+    throw std::invalid_argument(place + ": " + column + " = '" + text + "', allowed: a number");
+  return value;
+}
+
 StepsTable::StepsTable(const std::filesystem::path& path) : file_(path.string()) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
@@ -35,10 +49,8 @@ StepsTable::StepsTable(const std::filesystem::path& path) : file_(path.string())
       throw std::invalid_argument(file_ + ": column " + column + " stands twice in the header");
   while (std::getline(file, line)) {
     rows_.push_back(split_csv_line(line));
-    const std::string place = file_ + ": line " + std::to_string(rows_.size() + 1);
-    if (rows_.back().size() != header_.size())
-      throw std::invalid_argument(place + " has " + std::to_string(rows_.back().size()) +
-                                  " cells, allowed: " + std::to_string(header_.size()));
+    const std::string place = file_ + ": " + line_of(rows_.size() - 1);
+    check_cell_count(place, rows_.back().size(), header_.size());
     if (file.eof()) throw std::invalid_argument(place + " has no end: the file is truncated");
   }
 }
@@ -50,13 +62,7 @@ const std::string& StepsTable::cell(std::size_t row, const std::string& column) 
 }
 
 double StepsTable::number(std::size_t row, const std::string& column) const {
-  const std::string& text = cell(row, column);
-  double value = std::numeric_limits<double>::quiet_NaN();
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
-    throw std::invalid_argument(file_ + ": " + line_of(row) + ": " + column + " = '" + text +
-                                "', allowed: a number");
-  return value;
+  return number_of_cell(file_ + ": " + line_of(row), column, cell(row, column));
 }
 
 std::map<std::string, std::string> cells_of(const StepRecord& row) {

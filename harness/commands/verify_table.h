@@ -36,6 +36,11 @@ class StepsTable {
 // The cells of one line without its end, unquoted.
 std::vector<std::string> split_csv_line(const std::string& line);
 
+// place: what an error begins with, "FILE: line 7". Throw std::invalid_argument: another number of cells than `columns`; a
+// cell that is not wholly a number ("nan" is one).
+void check_cell_count(const std::string& place, std::size_t cells, std::size_t columns);
+double number_of_cell(const std::string& place, const std::string& column, const std::string& text);
+
 // By column, what the program would write of a row.
 std::map<std::string, std::string> cells_of(const StepRecord& row);
 

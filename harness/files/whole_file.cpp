@@ -50,6 +50,14 @@ class Descriptor {
   throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(reason));
 }
 
+void write_aside(const NamedBytes& named) {
+  std::error_code ignored;
+  if (fs::is_directory(named.path, ignored))
+    fail(named.path, EISDIR);  // the renaming would find out too late
+  const Descriptor file(part_name_of(named.path), O_WRONLY | O_CREAT | O_TRUNC);
+  if (!file.is_open() || !file.write(named.bytes) || !file.sync()) fail(named.path, errno);
+}
+
 fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
@@ -67,11 +75,19 @@ void publish_part_file(const fs::path& path) {
 }
 
 void write_whole_file(const fs::path& path, std::string_view bytes) {
-  {
-    const Descriptor file(part_name_of(path), O_WRONLY | O_CREAT | O_TRUNC);
-    if (!file.is_open() || !file.write(bytes)) fail(path, errno);
+  const NamedBytes named{path, bytes};
+  write_whole_files({&named, 1});
+}
+
+void write_whole_files(std::span<const NamedBytes> files) {
+  std::size_t aside = 0;
+  try {
+    for (; aside < files.size(); ++aside) write_aside(files[aside]);
+  } catch (...) {
+    while (aside > 0) ::unlink(part_name_of(files[--aside].path).c_str());
+    throw;
   }
-  publish_part_file(path);
+  for (const NamedBytes& named : files) publish_part_file(named.path);
 }
 
 bool replace_in_place(const fs::path& path, std::string_view from, std::string_view to) {

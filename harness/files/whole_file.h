@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string_view>
 
 namespace cleave {
@@ -8,6 +9,13 @@ namespace cleave {
 // A file appears under its name only when it is whole and on the disk: it is written aside under `part_name_of`, synced and
 // renamed, and the renaming is synced too. What stood there before stays until then.
 void write_whole_file(const std::filesystem::path& path, std::string_view bytes);
+
+// Files that belong together: all are written aside before the first appears.
+struct NamedBytes {
+  std::filesystem::path path;
+  std::string_view bytes;
+};
+void write_whole_files(std::span<const NamedBytes> files);
 
 // Where a file lies until it is whole: `path` with ".part".
 std::filesystem::path part_name_of(const std::filesystem::path& path);

@@ -102,6 +102,53 @@ TEST_F(Campaigns, OfOtherColumnsAreRefusedByName) {
   EXPECT_FALSE(fs::exists(directory_ / "all.csv"));
 }
 
+TEST_F(Campaigns, WithALineOfOtherCellsAreRefusedByLine) {
+  const std::size_t columns = read_csv(steps("b", "cell1")).header.size();
+  for (const int more : {-40, -1, 1}) {
+    const std::size_t cells = columns + more;
+    edit_rows(steps("b", "cell1"), [&](CsvTable& table) { table.rows[3].resize(cells, "7"); });
+    const std::string wanted = "b/cell1/steps.csv: line 5 has " + std::to_string(cells) +
+                               " cells, allowed: " + std::to_string(columns) + "\n";
+    const ProgramResult compared = compare();
+    EXPECT_EQ(compared.exit_code, 1);
+    EXPECT_NE(compared.err.find(wanted), std::string::npos) << compared.err;
+    EXPECT_EQ(compared.out, "");
+    const ProgramResult collected =
+        run_cleave({"collect", directory_ / "b", "--out", directory_ / "all.csv"});
+    EXPECT_EQ(collected.exit_code, 1);
+    EXPECT_NE(collected.err.find(wanted), std::string::npos) << collected.err;
+    EXPECT_FALSE(fs::exists(directory_ / "all.csv"));
+  }
+}
+
+TEST_F(Campaigns, WithACellThatIsNoNumberAreRefusedByIt) {
+  for (const std::string text : {"abc", "12x", "", "-"}) {
+    edit_rows(steps("b", "cell1"), [&](CsvTable& table) {
+      set_column(table, "t_s_ms", [&](int row) { return row == 3 ? text : "10"; });
+    });
+    const ProgramResult result = compare();
+    EXPECT_EQ(result.exit_code, 1) << text;
+    EXPECT_NE(result.err.find("b/cell1/steps.csv: line 5: t_s_ms = '" + text + "', allowed: a number\n"),
+              std::string::npos)
+        << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+// -1 is "not measured" in a column of integers alone.
+TEST_F(Campaigns, MinusOneIsAValueOfAColumnOfNumbers) {
+  const auto steps_of = [&](const std::string& column) {
+    for (const char* campaign : {"a", "b"})
+      for (const char* cell : {"cell1", "cell2"})
+        edit_rows(steps(campaign, cell), [&](CsvTable& table) {
+          set_column(table, column, [](int row) { return row < 4 ? "-1" : "5"; });
+        });
+    return parse_csv(compare({"--column", column}).out).column("steps");
+  };
+  EXPECT_EQ(steps_of("potential_energy_j"), std::vector<std::string>(4, "6"));
+  EXPECT_EQ(steps_of("factorizations"), std::vector<std::string>(4, "4"));
+}
+
 TEST_F(Campaigns, ThatAreTheSameCompareAsSuch) {
   const ProgramResult result = compare();
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -142,10 +189,43 @@ TEST_F(Campaigns, AStepThatWasSolvedAndIsNoMoreFails) {
   EXPECT_NE(result.out.find(",lost\n"), std::string::npos) << result.out;
 }
 
+TEST_F(Campaigns, WithoutACommonGroupPrintNoTable) {
+  edit_rows(steps("b", "cell1"),
+            [](CsvTable& table) { set_column(table, "partitioner", [](int) { return "other"; }); });
+  fs::remove_all(steps("b", "cell2").parent_path());
+  const ProgramResult result = compare({"--by", "partitioner"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.out, "");
+  EXPECT_NE(result.err.find("--by: no group of partitioner is in both"), std::string::npos) << result.err;
+}
+
+// What was there before stays, all three of it; nothing new is left.
+TEST_F(Campaigns, AreCollectedIntoAllTablesOrNone) {
+  const fs::path folder = directory_ / "tables";
+  fs::create_directories(folder / "all.csv");
+  for (const char* name : {"all.cells.csv", "all.columns.csv"}) std::ofstream(folder / name) << "earlier";
+  const ProgramResult result =
+      run_cleave({"collect", directory_ / "a", "--out", folder / "all.csv", "--force"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("all.csv: cannot be written: Is a directory"), std::string::npos) << result.err;
+  for (const char* name : {"all.cells.csv", "all.columns.csv"})
+    EXPECT_EQ(read_text(folder / name), "earlier");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 3);
+}
+
+TEST_F(Campaigns, WithANameThatIsTooLongAreRefusedByIt) {
+  const std::string name(300, 'x');
+  const ProgramResult result = run_cleave({"collect", directory_ / "a", "--out", directory_ / name});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find(": cannot be written: File name too long"), std::string::npos) << result.err;
+}
+
 TEST_F(Campaigns, AreComparedByOtherColumnsAndNames) {
   const ProgramResult result = compare({"--by", "partitioner", "--column", "interface_rows"});
   EXPECT_EQ(parse_csv(result.out).column("partitioner"), (std::vector<std::string>{"mindp", "mix"}));
   EXPECT_NE(compare({"--by", "partitionr"}).err.find("did you mean 'partitioner'?"), std::string::npos);
+  EXPECT_NE(compare({"--by", "step,partitioner,step"}).err.find("--by: step is given twice"),
+            std::string::npos);
   EXPECT_NE(compare({"--column", "status"}).err.find("holds text"), std::string::npos);
   EXPECT_NE(compare({"--allow", "-1"}).err.find("--allow: -1 is not in"), std::string::npos);
   EXPECT_EQ(run_cleave({"compare", directory_ / "a"}).exit_code, 1);
@@ -169,10 +249,18 @@ TEST(RatioInterval, HoldsTheRatioAndIsOfItsPairs) {
 
 // An even number, by hand; four pairs are too few.
 TEST(RatioInterval, IsOfMedians) {
-  const std::vector<double> a = {1, 2, 3, 100}, b = {4, 6, 1, 1000};
+  const std::vector<double> a = {1, 2, 3, 100}, b = {4, 7, 1, 1000};
   const RatioInterval few = ratio_interval(a, b, 1);
-  EXPECT_DOUBLE_EQ(few.ratio, 5 / 2.5);
+  EXPECT_DOUBLE_EQ(few.ratio, 5.5 / 2.5);  // 2 and 7 / 3 of the lower and the upper middle
   EXPECT_TRUE(std::isnan(few.low) && std::isnan(few.high));
+}
+
+// Where half of the pairs are 0, so are both medians of some resamples.
+TEST(RatioInterval, IsNoneWhereResamplesHaveNoRatio) {
+  const std::vector<double> a = {0, 0, 0, 1, 2, 3, 4};
+  const RatioInterval interval = ratio_interval(a, a, 1);
+  EXPECT_EQ(interval.ratio, 1);
+  EXPECT_TRUE(std::isnan(interval.low) && std::isnan(interval.high));
 }
 
 }  // namespace

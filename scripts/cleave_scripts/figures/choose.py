@@ -1,6 +1,4 @@
 """Which blocks belong together: those of the paper's experiment, the longest run, and what a caption says of them."""
-import itertools
-
 import pandas
 
 from cleave_scripts.figures.tree import NoData, need
@@ -18,6 +16,21 @@ def combinations(rows):
     return set(zip(rows["partitioner"], rows["refiner"]))
 
 
+def unscaled_parts(blocks, solver):
+    """What the blocks have of the solver, in their order; scaling runs have nothing."""
+    parts = (block.of_solver(solver) for block in blocks if not block.is_scaling)
+    return [part for part in parts if part is not None]
+
+
+def of_first_setup(parts):
+    """Those that are repeated runs of the setup of the first."""
+    first = parts[0] if parts else None
+    return [
+        part for part in parts
+        if (part.setup, part.threads, part.label) == (first.setup, first.threads, first.label)
+    ]
+
+
 def main_blocks(blocks, solver):
     """By scene, the blocks behind Figures 3 and 5, Table 1 and the verdicts: repeated runs of one setup.
 
@@ -26,18 +39,14 @@ def main_blocks(blocks, solver):
     these combinations, in the same order. Returns what was left out as lines too.
     """
     candidates = {}
-    for block in blocks:
-        part = None if block.is_scaling else block.of_solver(solver)
-        if part is not None:
-            key = (part.setup, part.threads, part.label)
-            candidates.setdefault(part.scene, {}).setdefault(key, []).append(part)
+    for part in unscaled_parts(blocks, solver):
+        candidates.setdefault(part.scene, []).append(part)
     chosen, notes = {}, []
     for scene in in_order(candidates, SCENES):
-        every = sorted(itertools.chain(*candidates[scene].values()), key=preference)
+        every = sorted(candidates[scene], key=preference)
         first = every[0]
-        same = candidates[scene][first.setup, first.threads, first.label]
         chosen[scene] = [
-            part for part in every if part in same and combinations(first.rows) <= combinations(part.rows)
+            part for part in of_first_setup(every) if combinations(first.rows) <= combinations(part.rows)
         ]
         others = sorted({part.experiment.name for part in every if part not in chosen[scene]})
         if others:
@@ -63,37 +72,24 @@ def most_steps(blocks, scene, solver, partitioner):
 
     Where no run is longer, the one of the paper's experiment, since `preference` decides then.
     """
-    parts = [
-        part for block in blocks
-        if block.scene == scene and not block.is_scaling and (part := block.of_solver(solver)) is not None
-    ]
+    parts = [part for part in unscaled_parts(blocks, solver) if part.scene == scene]
     wanted = {(partitioner, refiner) for refiner in REFINERS}
     full = [part for part in parts if wanted <= combinations(part.rows)]
     parts = full or [part for part in parts if partitioner in set(part.rows["partitioner"])]
     if not parts:
         raise NoData(f"no rows of {partitioner} in scene {scene}")
     parts.sort(key=lambda part: (not part.is_default, -step_count(part.rows), preference(part)))
-    first = parts[0]
-    return [
-        part for part in parts
-        if (part.setup, part.threads,
-            part.label) == (first.setup, first.threads,
-                            first.label) and step_count(part.rows) == step_count(first.rows)
-    ]
+    steps = step_count(parts[0].rows)
+    return [part for part in of_first_setup(parts) if step_count(part.rows) == steps]
 
 
 def same_setup_with(blocks, scene, solver, partitioners):
     """The blocks, repeated runs of the setup that `preference` puts first, with rows of all these partitioners; or none."""
     parts = [
-        part for block in blocks
-        if block.scene == scene and not block.is_scaling and (part := block.of_solver(solver)) is not None
-        and set(partitioners) <= set(part.rows["partitioner"])
+        part for part in unscaled_parts(blocks, solver)
+        if part.scene == scene and set(partitioners) <= set(part.rows["partitioner"])
     ]
-    parts.sort(key=preference)
-    return [
-        part for part in parts
-        if (part.setup, part.threads, part.label) == (parts[0].setup, parts[0].threads, parts[0].label)
-    ]
+    return of_first_setup(sorted(parts, key=preference))
 
 
 def first_runs(group):
