@@ -86,7 +86,8 @@ void BranchKernel::list_tasks() {
 void BranchKernel::find_changed(const RowWeights& weights, ParallelTasks& tasks) {
   const long preparation = step_->preparations();
   const bool is_new = std::exchange(factored_preparation_, preparation) != preparation;
-  const bool all = std::exchange(changed_all_, true) || is_new;  // true until this factorisation has succeeded
+  const bool all =
+      std::exchange(changed_all_, true) || is_new;  // true until this factorisation has succeeded
   std::ranges::fill(changed_, all);
   tasks.run_over(step_->group_chunks(),
                  [&](const Chunk& groups) { matrix_.take_weights(weights.d, groups, changed_); });
