@@ -136,6 +136,7 @@ class CommandTest(TortureCase):
         environment = dict(os.environ, CLEAVE_PROGRAM=PROGRAM)
         with subprocess.Popen(self.command("edits"), env=environment, stderr=subprocess.PIPE, text=True) as running:
             while not (self.out / "torture.json").is_file():
+                self.assertIsNone(running.poll())
                 time.sleep(0.05)
             running.send_signal(signal.SIGINT)
             told = running.communicate()[1]
@@ -148,6 +149,7 @@ class CommandTest(TortureCase):
         environment = dict(os.environ, CLEAVE_PROGRAM=str(MISBEHAVING), HONEST_PROGRAM=HONEST, MISBEHAVIOUR="hang")
         with subprocess.Popen(self.command("two-processes"), env=environment, stderr=subprocess.PIPE, text=True) as running:
             while not (hanging := self.children_of(running.pid)):
+                self.assertIsNone(running.poll())
                 time.sleep(0.05)
             time.sleep(0.5)  # it may be one that is only being started
             running.send_signal(signal.SIGINT)

@@ -7,6 +7,7 @@ import signal
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.torture.tally import Tally
 
+SIGNALS = signal.SIGINT, signal.SIGTERM
 FORK = multiprocessing.get_context("fork")
 
 
@@ -15,27 +16,32 @@ class Lanes:
     only the counts are new."""
 
     def __init__(self, count, make):
-        self.make, self.tallies, self.pipes = make, [Tally() for _ in range(count)], {}
+        self.make, self.tallies, self.pipes, self.interrupted = make, [Tally() for _ in range(count)], {}, False
         self.parent = os.getpid()
+        # No signal is lost or taken twice while lanes begin: one that has no handler yet would be killed or never told.
+        signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
         for lane in range(count):
             ours, theirs = FORK.Pipe(duplex=False)
             process = FORK.Process(target=self._run, args=(lane, theirs))
             process.start()
             theirs.close()
             self.pipes[ours] = lane, process
+        self.before = signal.signal(signal.SIGINT, self._interrupt)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
 
     def watch(self, tell):
-        """tell(text, tally of all lanes) until the last lane has ended. Whether it was interrupted."""
-        interrupted = False
+        """tell(text, tally of all lanes) until the last lane has ended. Whether it was interrupted since the lanes began."""
         while self.pipes:
-            try:
-                for pipe in multiprocessing.connection.wait(self.pipes):
-                    self._take(pipe, tell)
-            except KeyboardInterrupt:
-                interrupted = True
-                for _, process in self.pipes.values():
-                    process.terminate()
-        return interrupted
+            for pipe in multiprocessing.connection.wait(self.pipes):
+                self._take(pipe, tell)
+        signal.signal(signal.SIGINT, self.before)
+        return self.interrupted
+
+    def _interrupt(self, *_):
+        """No exception, which could come amid the reading of a pipe."""
+        self.interrupted = True
+        for _, process in self.pipes.values():
+            process.terminate()
 
     def _take(self, pipe, tell):
         lane, process = self.pipes[pipe]
@@ -51,18 +57,24 @@ class Lanes:
 
     def _run(self, lane, pipe):
         """A terminal interrupts all its processes; lanes are told by SIGTERM, once. Programs under trial must not inherit a signal
-        that is ignored, so it is caught."""
+        that is ignored, so it is caught. Python drops what is raised in its hooks at a fork: then the lane ends with the trial."""
         signal.signal(signal.SIGINT, lambda *_: None)
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
+        signal.signal(signal.SIGTERM, self._end)
         tally = Tally()
 
         def tell(text):
-            if os.getppid() != self.parent:
+            if self.interrupted or os.getppid() != self.parent:
                 raise KeyboardInterrupt
             pipe.send((text, tally))
 
         try:
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
             self.make(lane, tally, tell)
             tell("")
         except KeyboardInterrupt:
             pipe.send(("", tally))
+
+    def _end(self, *_):
+        if not self.interrupted:
+            self.interrupted = True
+            raise KeyboardInterrupt

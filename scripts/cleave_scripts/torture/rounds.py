@@ -8,8 +8,6 @@ import traceback
 from cleave_scripts.torture.material import Material
 from cleave_scripts.torture.trial import Trial
 
-EVERY_S = 30  # the counts are told
-
 
 class Rounds:
     """Kinds take turns so that each has its share of the time. program, material and patience are what trials work with; lane is
@@ -20,7 +18,7 @@ class Rounds:
         self.kinds, self.options, self.keeper, self.tally, self.tell = kinds, options, keeper, tally, tell
         self.lane, self.lanes = lane, options.side_by_side
         self.material = None
-        self.begin = self.told = time.monotonic()
+        self.begin = time.monotonic()
 
     def run(self):
         with tempfile.TemporaryDirectory(prefix="torture.") as scratch:
@@ -31,7 +29,7 @@ class Rounds:
                 self.tally.counts[kind.name]["trials"] = 0
             while kind := self._next():
                 self._make(kind, scratch)
-                self._tell()
+                self.tell("")
 
     def _present(self):
         """Those that can be tried here. Of the others is said why not: nothing is passed over in silence."""
@@ -74,8 +72,3 @@ class Rounds:
 
     def _seconds(self):
         return time.monotonic() - self.begin
-
-    def _tell(self):
-        if time.monotonic() - self.told >= EVERY_S:
-            self.told = time.monotonic()
-            self.tell("")
