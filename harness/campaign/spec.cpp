@@ -1,18 +1,15 @@
 #include "harness/campaign/spec.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
 #include <stdexcept>
-#include <tuple>
 
 #include "harness/base/names.h"
-#include "harness/base/numbers.h"
+#include "harness/campaign/spec_grid.h"
 #include "harness/experiment/options.h"
-#include "scenarios/file_table.h"
 #include "scenarios/scene.h"
 
 namespace cleave {
@@ -21,14 +18,8 @@ namespace {
 using scene_file::reject_at;
 using Options = std::map<std::string, std::string>;
 
-constexpr const char* kValueForm = "a text, a number, true or false";
-
-// One key of a grid and its values, in their order.
-struct Dimension {
-  std::string key;
-  std::vector<std::string> values;
-  toml::source_region source;
-};
+constexpr int kMostRounds = 1000;
+const std::vector<std::string> kRules = {"include", "exclude", "rounds"};
 
 // Those of `run` that a cell may choose: where it goes is the campaign's business.
 std::vector<std::string> option_names() {
@@ -44,153 +35,138 @@ std::vector<std::string> option_names() {
 
 bool is_flag(const std::string& name) {
   if (const OptionSpec* spec = find_option(name)) return spec->kind == OptionKind::flag;
-  return std::ranges::any_of(common_parameters(), [&](const auto& row) {
-    return row.parameter.name == name && row.parameter.kind == Parameter::Kind::flag;
-  });
+  const CommonParameter* common = find_common_parameter(name);
+  return common != nullptr && common->parameter.kind == Parameter::Kind::flag;
 }
 
-class Reader {
- public:
-  explicit Reader(std::string name) : name_(std::move(name)), keys_(option_names()) {}
+// The options of a cell read as `run` reads them.
+CampaignCell checked_cell(const Options& options) {
+  CampaignCell cell;
+  cell.options = options;
+  Options given = options;
+  given["out"] = "-";  // is required, and the campaign's
+  const std::vector<OptionValue> values = option_values(parse_run_options(given));
+  cell.run_id = run_id(values);
+  for (const OptionValue& value : values)
+    if (!value.in_run_id && value.name != "out" && value.name != "force")
+      cell.beside_run_id[value.name] = value.text;
+  return cell;
+}
 
-  std::vector<CampaignCell> cells(const toml::table& file) {
-    const std::vector<Dimension> grid = dimensions(file, {"include", "exclude"});
-    std::vector<Options> found = product(grid, file);
-    for (const toml::table* rule : rules(file, "exclude")) exclude(*rule, grid, found);
-    for (const Options& options : found) add(options, grid, file);
-    for (const toml::table* rule : rules(file, "include")) include(*rule, grid);
-    if (cells_.empty()) throw std::invalid_argument(name_ + ": has no cell");
-    return std::move(cells_);
+class Expansion {
+ public:
+  explicit Expansion(const std::string& file) : file_(file), known_(option_names()) {}
+
+  std::vector<CampaignCell> cells(const toml::table& spec) {
+    const Grid grid = read_grid(spec, file_, known_, kRules);
+    for (const toml::node* rule : rules(spec, "include"))
+      check_size(read_grid(*rule->as_table(), file_, known_), *rule);
+    check_size(grid, spec);
+    std::vector<Options> found = grid.empty() ? std::vector<Options>() : product(grid);
+    for (const toml::node* rule : rules(spec, "exclude")) exclude(*rule->as_table(), grid, found);
+    for (const Options& options : found) add(options, grid, spec);
+    for (const toml::node* rule : rules(spec, "include")) include(*rule->as_table(), grid);
+    if (cells_.empty()) throw std::invalid_argument(file_ + ": has no cell");
+    return in_rounds(spec);
   }
 
  private:
-  std::string scalar(const toml::node& node, const std::string& key) const {
-    if (const auto* text = node.as_string()) return text->get();
-    if (const auto* integer = node.as_integer()) return std::to_string(integer->get());
-    if (const auto* number = node.as_floating_point()) return number_text(number->get());
-    if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
-    reject_at(name_, node.source(), key, std::string("is not ") + kValueForm);
-  }
-
-  // Numbers are made from the first, so that rounding does not pile up; the end counts with a part in 1e9 to spare.
-  std::vector<std::string> range(const toml::table& node, const std::string& key) const {
-    const std::string file = name_;
-    scene_file::Table table(node, key, file, {"from", "to", "step", "factor"});
-    const double from = table.at("from").number({}), to = table.at("to").number({});
-    const auto step = table.find("step"), factor = table.find("factor");
-    if (step.has_value() == factor.has_value()) reject_at(name_, node.source(), key, "needs either step or factor");
-    if (factor && !(from > 0 && to > 0)) reject_at(name_, node.source(), key, "with factor, from and to are above 0");
-    const double by = step ? step->number({0, INFINITY, true}) : factor->number({1, INFINITY, true});
-    const double last = step ? (to - from) / by : std::log(to / from) / std::log(by);
-    if (last < -1e-9) reject_at(name_, node.source(), key, "to is below from");
-    if (last >= kMostCells) reject_at(name_, node.source(), key, "has more than " + std::to_string(kMostCells) + " values");
-    std::vector<std::string> values;
-    for (int k = 0; k <= static_cast<int>(last + 1e-9); ++k)
-      values.push_back(rounded(step ? from + k * by : from * std::pow(by, k)));
-    return values;
-  }
-
-  // 0.30000000000000004 is 0.3: twelve digits are more than anyone writes.
-  static std::string rounded(double value) {
-    std::ostringstream text;
-    text.precision(12);
-    text << value;
-    return number_text(std::stod(text.str()));
-  }
-
-  std::vector<std::string> values(const toml::node& node, const std::string& key) const {
-    if (node.is_table()) return range(*node.as_table(), key);
-    if (!node.is_array()) return {scalar(node, key)};
-    std::vector<std::string> texts;
-    for (const toml::node& element : *node.as_array()) texts.push_back(scalar(element, key));
-    if (texts.empty()) reject_at(name_, node.source(), key, "an empty list makes no cell");
-    return texts;
-  }
-
-  // In the order of the file, which the library's table does not keep.
-  std::vector<Dimension> dimensions(const toml::table& table, const std::vector<std::string>& others) const {
-    std::vector<std::string> known = keys_;
-    known.insert(known.end(), others.begin(), others.end());
-    std::vector<Dimension> grid;
-    for (const auto& [name, node] : table) {
-      const std::string key(name.str());
-      if (std::ranges::count(known, key) == 0) reject_at(name_, name.source(), key, unknown_name_text(key, known));
-      if (std::ranges::count(others, key) == 0) grid.push_back({key, values(node, key), name.source()});
-    }
-    std::ranges::sort(grid, {}, [](const Dimension& d) {
-      return std::tuple(d.source.begin.line, d.source.begin.column);
-    });
-    return grid;
-  }
-
-  std::vector<const toml::table*> rules(const toml::table& file, const std::string& key) const {
-    std::vector<const toml::table*> found;
-    const toml::node* node = file.get(key);
+  std::vector<const toml::node*> rules(const toml::table& spec, const std::string& key) const {
+    std::vector<const toml::node*> found;
+    const toml::node* node = spec.get(key);
     if (node == nullptr) return found;
-    if (!node->is_array_of_tables()) reject_at(name_, node->source(), key, "is not a list of tables: [[" + key + "]]");
-    for (const toml::node& rule : *node->as_array()) found.push_back(rule.as_table());
+    if (!node->is_array_of_tables())
+      reject_at(file_, node->source(), key, "is not a list of tables: [[" + key + "]]");
+    for (const toml::node& rule : *node->as_array()) found.push_back(&rule);
     return found;
   }
 
-  std::vector<Options> product(const std::vector<Dimension>& grid, const toml::table& table) const {
-    if (grid.empty()) return {};
-    std::vector<Options> all(1);
-    for (const Dimension& dimension : grid) {
-      if (all.size() * dimension.values.size() > kMostCells)
-        reject_at(name_, table.source(), dimension.key, "makes more than " + std::to_string(kMostCells) + " cells");
-      std::vector<Options> longer;
-      for (const Options& options : all)
-        for (const std::string& value : dimension.values) (longer.emplace_back(options))[dimension.key] = value;
-      all = std::move(longer);
+  void check_size(const Grid& grid, const toml::node& node) const {
+    if (product_size(grid) > kMostCells)
+      reject_at(file_, grid.empty() ? node.source() : grid.back().source,
+                grid.empty() ? "cells" : grid.back().key,
+                "makes more than " + std::to_string(kMostCells) + " cells");
+  }
+
+  void exclude(const toml::table& rule, const Grid& grid, std::vector<Options>& found) const {
+    const Grid unwanted = read_grid(rule, file_, known_);
+    if (unwanted.empty())
+      reject_at(file_, rule.source(), "exclude", "has no key and would remove every cell");
+    for (const Dimension& dimension : unwanted)
+      if (find_dimension(grid, dimension.key) == nullptr)
+        reject_at(file_, dimension.source, dimension.key,
+                  "is no key of the cells, so that nothing is excluded by it");
+    const auto is_unwanted = [&](const Options& options) {
+      return std::ranges::all_of(unwanted, [&](const Dimension& dimension) {
+        return std::ranges::count(dimension.values, options.at(dimension.key)) > 0;
+      });
+    };
+    if (std::erase_if(found, is_unwanted) == 0) reject_at(file_, rule.source(), "exclude", "removes no cell");
+  }
+
+  void include(const toml::table& rule, const Grid& grid) {
+    Grid own = read_grid(rule, file_, known_);
+    if (own.empty()) reject_at(file_, rule.source(), "include", "has no key");
+    for (const Dimension& dimension : grid)
+      if (dimension.values.size() == 1 && find_dimension(own, dimension.key) == nullptr)
+        own.push_back(dimension);
+    for (const Options& options : product(own)) add(options, own, rule);
+  }
+
+  void add(Options options, const Grid& grid, const toml::table& table) {
+    std::erase_if(options,
+                  [](const auto& option) { return option.second == "false" && is_flag(option.first); });
+    const std::string place = "cell " + std::to_string(cells_.size() + 1);
+    CampaignCell cell;
+    try {
+      cell = checked_cell(options);
+    } catch (const std::invalid_argument& error) {
+      reject_cell(error.what(), grid, table, place);
     }
+    if (!names_.insert(cell.name()).second)
+      reject_at(file_, table.source(), place,
+                "is there already: another cell has the same run id " + cell.run_id + " and threads");
+    if (cells_.size() == kMostCells)
+      reject_at(file_, table.source(), place,
+                "is one more than the " + std::to_string(kMostCells) + " that are allowed");
+    cells_.push_back(std::move(cell));
+  }
+
+  // At the key that the error of `run` names, where the spec has it.
+  [[noreturn]] void reject_cell(const std::string& text, const Grid& grid, const toml::table& table,
+                                const std::string& place) const {
+    for (const Dimension& dimension : grid) {
+      const std::string option = "--" + dimension.key + ": ";
+      if (text.starts_with(option))
+        reject_at(file_, dimension.source, dimension.key, text.substr(option.size()));
+    }
+    reject_at(file_, table.source(), place, text);
+  }
+
+  std::vector<CampaignCell> in_rounds(const toml::table& spec) const {
+    int rounds = 1;
+    if (const toml::node* node = spec.get("rounds"))
+      rounds = scene_file::Value(*node, "rounds", file_).integer({1, kMostRounds});
+    if (static_cast<double>(rounds) * static_cast<double>(cells_.size()) > kMostCells)
+      reject_at(file_, spec.get("rounds")->source(), "rounds",
+                "make more than " + std::to_string(kMostCells) + " cells");
+    std::vector<CampaignCell> all;
+    for (int round = 1; round <= rounds; ++round)
+      for (const CampaignCell& cell : cells_) all.emplace_back(cell).round = round;
     return all;
   }
 
-  void exclude(const toml::table& rule, const std::vector<Dimension>& grid, std::vector<Options>& found) const {
-    const std::vector<Dimension> unwanted = dimensions(rule, {});
-    if (unwanted.empty()) reject_at(name_, rule.source(), "exclude", "has no key and would remove every cell");
-    for (const Dimension& key : unwanted)
-      if (std::ranges::count(grid, key.key, &Dimension::key) == 0)
-        reject_at(name_, key.source, "exclude." + key.key, "is not a key of the cells");
-    const std::size_t removed = std::erase_if(found, [&](const Options& options) {
-      return std::ranges::all_of(
-          unwanted, [&](const Dimension& key) { return std::ranges::count(key.values, options.at(key.key)) > 0; });
-    });
-    if (removed == 0) reject_at(name_, rule.source(), "exclude", "removes no cell");
-  }
-
-  void include(const toml::table& rule, const std::vector<Dimension>& grid) {
-    std::vector<Dimension> own = dimensions(rule, {});
-    if (own.empty()) reject_at(name_, rule.source(), "include", "has no key");
-    for (const Dimension& key : grid)
-      if (key.values.size() == 1 && std::ranges::count(own, key.key, &Dimension::key) == 0) own.push_back(key);
-    for (const Options& options : product(own, rule)) add(options, own, rule);
-  }
-
-  void add(Options options, const std::vector<Dimension>& grid, const toml::table& table) {
-    std::erase_if(options, [](const auto& option) { return option.second == "false" && is_flag(option.first); });
-    try {
-      const std::string id = run_id(parse_run_options(options));
-      if (!ids_.insert(id).second)
-        reject_at(name_, table.source(), "cell " + std::to_string(cells_.size() + 1), "is there already (run id " + id + ")");
-      cells_.push_back({options, id});
-    } catch (const std::invalid_argument& error) {
-      const std::string text = error.what();
-      for (const Dimension& key : grid)
-        if (text.starts_with("--" + key.key + ":") || text.starts_with("--" + key.key + " "))
-          reject_at(name_, key.source, key.key, text);
-      if (text.starts_with(name_)) throw;
-      reject_at(name_, table.source(), "cell " + std::to_string(cells_.size() + 1), text);
-    }
-  }
-
-  std::string name_;
-  std::vector<std::string> keys_;
+  const std::string& file_;
+  std::vector<std::string> known_;
   std::vector<CampaignCell> cells_;
-  std::set<std::string> ids_;
+  std::set<std::string> names_;
 };
 
 }  // namespace
+
+std::string CampaignCell::name() const {
+  return run_id + "_t" + beside_run_id.at("threads") + "_r" + std::to_string(round);
+}
 
 std::vector<std::string> CampaignCell::arguments() const {
   std::vector<std::string> words;
@@ -199,14 +175,16 @@ std::vector<std::string> CampaignCell::arguments() const {
   return words;
 }
 
-std::vector<CampaignCell> parse_campaign(const std::string& text, const std::string& name) {
-  return Reader(name).cells(scene_file::parsed_toml(text, name));
+std::vector<CampaignCell> parse_campaign(const std::string& text, const std::string& file) {
+  return Expansion(file).cells(scene_file::parsed_toml(text, file));
 }
 
 std::vector<CampaignCell> read_campaign(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
-  if (!file || std::filesystem::is_directory(path)) throw std::invalid_argument("SPEC: '" + path + "' cannot be read");
+  std::error_code none;
+  if (!file || std::filesystem::is_directory(path, none))
+    throw std::invalid_argument("SPEC: '" + path + "' cannot be read");
   text << file.rdbuf();
   return parse_campaign(text.str(), path);
 }
