@@ -179,14 +179,14 @@ std::vector<CampaignCell> parse_campaign(const std::string& text, const std::str
   return Expansion(file).cells(scene_file::parsed_toml(text, file));
 }
 
-std::vector<CampaignCell> read_campaign(const std::string& path) {
+std::string read_spec(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   std::error_code none;
   if (!file || std::filesystem::is_directory(path, none))
     throw std::invalid_argument("SPEC: '" + path + "' cannot be read");
   text << file.rdbuf();
-  return parse_campaign(text.str(), path);
+  return text.str();
 }
 
 }  // namespace cleave

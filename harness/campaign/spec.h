@@ -39,7 +39,10 @@ inline constexpr int kMostCells = 100000;
 
 // Throws std::invalid_argument "spec.toml:7: bodys: ...": no TOML, an unknown key (and the nearest one), a value that `run`
 // would refuse before it makes anything, a rule that removes nothing, two cells of one name, no cell at all, more than kMostCells.
-std::vector<CampaignCell> read_campaign(const std::string& path);
+// file: what errors call the text.
 std::vector<CampaignCell> parse_campaign(const std::string& text, const std::string& file);
+
+// All bytes of the file. Throws the same where it cannot be read.
+std::string read_spec(const std::string& path);
 
 }  // namespace cleave

@@ -8,6 +8,8 @@ std::span<const Command> commands() {
       {"run", "simulate a scene and measure every combination on it", declare_run},
       {"record", "simulate a scene and write the problems of chosen steps to files", declare_record},
       {"replay", "solve recorded problems with every combination", declare_replay},
+      {"sweep", "run a campaign of many runs from a TOML file, and go on with it where it was",
+       declare_sweep},
       {"export", "write the body graph or a matrix of a recorded problem for other programs", declare_export},
       {"collect", "put the rows of many output directories into one table", declare_collect},
       {"compare", "hold the times of two campaigns against each other, cell by cell", declare_compare},

@@ -33,9 +33,6 @@ class StepsTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-// The cells of one line without its end, unquoted.
-std::vector<std::string> split_csv_line(const std::string& line);
-
 // By column, what the program would write of a row.
 std::map<std::string, std::string> cells_of(const StepRecord& row);
 

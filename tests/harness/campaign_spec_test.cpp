@@ -149,8 +149,8 @@ TEST(CampaignSpec, ErrorsNameFileLineKeyAndTheNearestKey) {
 TEST(CampaignSpec, NoErrorIsLongerThanALine) {
   for (const char* text : {"bodies = \n", "x = 1", "scene = 'x\x01'", "= 3", "[[", "scene = 'none'"})
     EXPECT_EQ(error_of(text).find('\n'), std::string::npos) << error_of(text);
-  EXPECT_THROW(read_campaign("/nonexistent/spec.toml"), std::invalid_argument);
-  EXPECT_THROW(read_campaign("/"), std::invalid_argument);
+  EXPECT_THROW(read_spec("/nonexistent/spec.toml"), std::invalid_argument);
+  EXPECT_THROW(read_spec("/"), std::invalid_argument);
 }
 
 TEST(CampaignSpec, AThousandCellsHaveAsManyNames) {
