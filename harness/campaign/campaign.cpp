@@ -24,6 +24,17 @@ bool is_whole(const fs::path& share) {
   }
 }
 
+// What remains of a row of an index that is not whole: its directory has to say the rest.
+IndexRow unsure(const IndexRow& row) {
+  IndexRow pending;
+  pending.cell = row.cell;
+  pending.run_id = row.run_id;
+  pending.round = row.round;
+  pending.arguments = row.arguments;
+  pending.run_s = pending.process_s = std::numeric_limits<double>::quiet_NaN();
+  return pending;
+}
+
 }  // namespace
 
 void check_campaign_directory(const std::string& out) {
@@ -85,9 +96,10 @@ void Campaign::keep_earlier(const std::vector<CampaignCell>& all) {
   if (!fs::exists(share / kIndexFile)) return;
   std::set<std::string> names;
   for (const CampaignCell& cell : all) names.insert(cell.name());
-  if (!is_whole(share)) return;
+  const bool whole = is_whole(share);
   for (IndexRow row : read_index(share / kIndexFile)) {
     if (names.contains(row.cell)) continue;
+    if (!whole) row = unsure(row);
     row.number = 0;
     if (row.is_pending()) take_if_complete(options_.out, row);
     if (still_stands(options_.out, row)) earlier_.push_back(std::move(row));

@@ -72,6 +72,14 @@ std::string CellEnd::text() const {
   return "ended by " + (name != nullptr ? std::string("SIG") + name : "signal " + std::to_string(signal));
 }
 
+std::string CellEnd::last_line() const {
+  const std::size_t end = printed.find_last_not_of("\n\r ");
+  if (end == std::string::npos) return {};
+  const std::size_t before = printed.find_last_of("\n\r", end);
+  const std::size_t start = before == std::string::npos ? 0 : before + 1;
+  return printed.substr(start, end + 1 - start);
+}
+
 CellProcess::CellProcess(const CellCommand& command) {
   std::vector<char*> words;
   for (const std::string& word : command.words) words.push_back(const_cast<char*>(word.c_str()));
@@ -116,6 +124,19 @@ void CellProcess::send(int signal) const { ::kill(pid_, signal); }
 
 double CellProcess::seconds() const {
   return std::chrono::duration<double>((ended_ ? end_ : Clock::now()) - start_).count();
+}
+
+CellEnd run_to_end(const CellCommand& command, bool& interrupted) {
+  constexpr double kLookEvery_s = 60;
+  const SignalsWaitedFor signals;
+  CellProcess process(command);
+  while (!process.has_ended()) {
+    const int signal = signals.wait(kLookEvery_s);
+    if (signal != SIGINT && signal != SIGTERM) continue;
+    process.send(SIGTERM);
+    interrupted = true;
+  }
+  return process.end();
 }
 
 SignalsWaitedFor::SignalsWaitedFor() {

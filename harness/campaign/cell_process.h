@@ -23,6 +23,8 @@ struct CellEnd {
 
   // "ended by SIGABRT", "ended with exit code 1".
   std::string text() const;
+  // Of what it printed; empty where it printed nothing.
+  std::string last_line() const;
 };
 
 // The process gets no terminal and a process group of its own, so that an interrupt on the keyboard reaches it once, through us;
@@ -50,6 +52,10 @@ class CellProcess {
   Clock::time_point start_ = Clock::now(), end_ = start_;
   bool ended_ = false;
 };
+
+// Makes the process and waits for its end; SIGINT and SIGTERM, which are waited for too, are passed on to it as SIGTERM. True into
+// `interrupted` where one came.
+CellEnd run_to_end(const CellCommand& command, bool& interrupted);
 
 // While it stands, these signals wait until they are asked for: SIGCHLD, SIGINT, SIGTERM. Processes of cells get them as ever.
 class SignalsWaitedFor {

@@ -66,14 +66,6 @@ bool is_sealed(const fs::path& directory) {
   });
 }
 
-std::string last_line(const std::string& text) {
-  const std::size_t end = text.find_last_not_of("\n\r ");
-  if (end == std::string::npos) return {};
-  const std::size_t start = text.find_last_of("\n\r", end);
-  return text.substr(start == std::string::npos ? 0 : start + 1,
-                     end - (start == std::string::npos ? 0 : start + 1) + 1);
-}
-
 }  // namespace
 
 IndexRow pending_row(const CampaignCell& cell, int number) {
@@ -144,7 +136,7 @@ bool still_stands(const fs::path& out, const IndexRow& row) {
 }
 
 void take_failure(const CellEnd& end, IndexRow& row) {
-  const std::string last = last_line(end.printed);
+  const std::string last = end.last_line();
   SolveStatus status = SolveStatus::crashed;
   if (end.exit_code == 1 && last.find("out of memory") != std::string::npos)
     status = SolveStatus::out_of_memory;

@@ -194,12 +194,13 @@ class Sweep {
     return row;
   }
 
-  // What is left of it gets checksums, so that the index can vouch for it.
+  // What is left of it gets checksums, so that the index can vouch for it. Whether there is anything.
   static bool seal(const fs::path& directory) {
     if (!fs::is_directory(directory) || is_run_elsewhere(directory)) return false;
     std::vector<std::string> names;
     for (const fs::directory_entry& entry : fs::directory_iterator(directory))
       if (entry.is_regular_file()) names.push_back(entry.path().filename());
+    if (names.empty()) return false;
     std::ranges::sort(names);
     write_checksums(directory, names);
     return true;
@@ -235,10 +236,9 @@ class Sweep {
     std::string text = std::to_string(done_) + " of " + std::to_string(cells.size()) + " cells, " +
                        std::to_string(failed_) + " failed";
     if (const auto left_s = campaign_.seconds_left(times_, options_.jobs))
-      text += ", about " + number_text(std::round(*left_s)) + " s to go";
+      text += ", about " + seconds_text(*left_s) + " to go";
     for (const RunningCell& cell : running_)
-      text += "; " + campaign_.rows()[cell.place].cell + " for " +
-              number_text(std::round(cell.process.seconds())) + " s";
+      text += "; " + campaign_.rows()[cell.place].cell + " for " + seconds_text(cell.process.seconds());
     progress_.show(text);
   }
 

@@ -10,6 +10,7 @@ std::span<const Command> commands() {
       {"replay", "solve recorded problems with every combination", declare_replay},
       {"sweep", "run a campaign of many runs from a TOML file, and go on with it where it was",
        declare_sweep},
+      {"rerun", "repeat a run from its manifest and hold its rows against those it left", declare_rerun},
       {"export", "write the body graph or a matrix of a recorded problem for other programs", declare_export},
       {"collect", "put the rows of many output directories into one table", declare_collect},
       {"compare", "hold the times of two campaigns against each other, cell by cell", declare_compare},

@@ -75,7 +75,7 @@ void check_threads(const SweepOptions& options, const Spec& spec) {
 }
 
 std::string about(const std::optional<double>& seconds) {
-  return seconds ? ", about " + number_text(std::round(*seconds)) + " s" : "";
+  return seconds ? ", about " + seconds_text(*seconds) : "";
 }
 
 int pending_of(const Campaign& campaign) {
