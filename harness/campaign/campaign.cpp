@@ -55,10 +55,6 @@ Campaign::Campaign(const SweepOptions& options, const Spec& spec)
     cells_.push_back(all[static_cast<std::size_t>(k)]);
     rows_.push_back(row_of(cells_.back(), k + 1, known));
   }
-  if (cells_.empty())
-    throw std::invalid_argument("--shard: share " + std::to_string(options.shard) + " of " +
-                                std::to_string(options.shards) + " has none of the " +
-                                std::to_string(all.size()) + " cells");
   keep_earlier(all);
 }
 

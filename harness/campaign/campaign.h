@@ -44,7 +44,6 @@ void check_campaign_directory(const std::string& out);
 // The cells of one share with what is known of them. Making one changes nothing.
 class Campaign {
  public:
-  // Throws std::invalid_argument with one line where the share has no cell.
   Campaign(const SweepOptions& options, const Spec& spec);
 
   const std::vector<CampaignCell>& cells() const { return cells_; }

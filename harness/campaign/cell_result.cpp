@@ -8,6 +8,7 @@
 
 #include "harness/base/csv_text.h"
 #include "harness/base/names.h"
+#include "harness/base/numbers.h"
 #include "harness/base/printable_text.h"
 #include "harness/files/checksums.h"
 #include "harness/files/manifest.h"
@@ -135,13 +136,17 @@ bool still_stands(const fs::path& out, const IndexRow& row) {
          is_file_of(log_path(out, row), row.log);
 }
 
-void take_failure(const CellEnd& end, IndexRow& row) {
+void take_failure(const CellEnd& end, std::optional<double> limit_s, IndexRow& row) {
   const std::string last = end.last_line();
   SolveStatus status = SolveStatus::crashed;
+  const bool has_begun = row.utc_start != "-";
+  if (end.exit_code == 1 && !has_begun) status = SolveStatus::refused;
   if (end.exit_code == 1 && last.find("out of memory") != std::string::npos)
     status = SolveStatus::out_of_memory;
+  if (limit_s) status = SolveStatus::timeout;
   row.status = to_string(status);
-  row.reason = end.text() + (last.empty() ? "" : ": " + printable(last));
+  row.reason = limit_s ? "took longer than " + number_text(*limit_s) + " s"
+                       : end.text() + (last.empty() ? "" : ": " + printable(last));
 }
 
 }  // namespace cleave

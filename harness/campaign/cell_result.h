@@ -37,7 +37,8 @@ std::filesystem::path log_path(const std::filesystem::path& out, const IndexRow&
 // there, and its log are those of the row.
 bool still_stands(const std::filesystem::path& out, const IndexRow& row);
 
-// Of a cell that did not come to its end: crashed, out_of_memory, refused. A time limit is the campaign's to know.
-void take_failure(const CellEnd& end, IndexRow& row);
+// Status and reason of a cell that did not come to its end: timeout where limit_s says that it was ended for that, out_of_memory,
+// refused where it had not even begun, else crashed. The row has what its manifest says.
+void take_failure(const CellEnd& end, std::optional<double> limit_s, IndexRow& row);
 
 }  // namespace cleave

@@ -62,11 +62,15 @@ class Expansion {
     for (const toml::node* rule : rules(spec, "include"))
       check_size(read_grid(*rule->as_table(), file_, known_), *rule);
     check_size(grid, spec);
-    std::vector<Options> found = grid.empty() ? std::vector<Options>() : product(grid);
+    const bool has_cells = find_dimension(grid, "scene") != nullptr;
+    std::vector<Options> found = has_cells ? product(grid) : std::vector<Options>();
     for (const toml::node* rule : rules(spec, "exclude")) exclude(*rule->as_table(), grid, found);
     for (const Options& options : found) add(options, grid, spec);
     for (const toml::node* rule : rules(spec, "include")) include(*rule->as_table(), grid);
-    if (cells_.empty()) throw std::invalid_argument(file_ + ": has no cell");
+    if (cells_.empty())
+      throw std::invalid_argument(
+          file_ + ": has no cell" +
+          (has_cells ? "" : "; the key scene is required, here or in an [[include]]"));
     return in_rounds(spec);
   }
 
@@ -107,12 +111,18 @@ class Expansion {
   void include(const toml::table& rule, const Grid& grid) {
     Grid own = read_grid(rule, file_, known_);
     if (own.empty()) reject_at(file_, rule.source(), "include", "has no key");
+    const bool takes_lists = find_dimension(grid, "scene") == nullptr;
     for (const Dimension& dimension : grid)
-      if (dimension.values.size() == 1 && find_dimension(own, dimension.key) == nullptr)
+      if ((takes_lists || dimension.values.size() == 1) && find_dimension(own, dimension.key) == nullptr)
         own.push_back(dimension);
+    check_size(own, rule);
+    const std::size_t before = cells_.size();
     for (const Options& options : product(own)) add(options, own, rule);
+    if (cells_.size() == before)
+      reject_at(file_, rule.source(), "include", "adds no cell that is not there already");
   }
 
+  // Series of cells may share some, which run once; but a dimension that makes the same cell twice is none.
   void add(Options options, const Grid& grid, const toml::table& table) {
     std::erase_if(options,
                   [](const auto& option) { return option.second == "false" && is_flag(option.first); });
@@ -123,9 +133,11 @@ class Expansion {
     } catch (const std::invalid_argument& error) {
       reject_cell(error.what(), grid, table, place);
     }
-    if (!names_.insert(cell.name()).second)
+    const auto [maker, is_new] = makers_.emplace(cell.name(), Maker{&table, cell.beside_run_id});
+    if (!is_new && (maker->second.table == &table || maker->second.beside_run_id != cell.beside_run_id))
       reject_at(file_, table.source(), place,
                 "is there already: another cell has the same run id " + cell.run_id + " and threads");
+    if (!is_new) return;
     if (cells_.size() == kMostCells)
       reject_at(file_, table.source(), place,
                 "is one more than the " + std::to_string(kMostCells) + " that are allowed");
@@ -156,10 +168,15 @@ class Expansion {
     return all;
   }
 
+  struct Maker {
+    const toml::table* table;
+    std::map<std::string, std::string> beside_run_id;
+  };
+
   const std::string& file_;
   std::vector<std::string> known_;
   std::vector<CampaignCell> cells_;
-  std::set<std::string> names_;
+  std::map<std::string, Maker> makers_;  // by the name of the cell, who made it
 };
 
 }  // namespace

@@ -11,6 +11,9 @@
 //     [[include]]                                     adds the cells of a grid of its own, after every exclusion; keys
 //     bodies = 400                                    of the file with one value hold here too, unless given anew
 //
+// A cell that an [[include]] makes and that is there already is the same cell.
+//
+// Without `scene` the keys of the file make no cells by themselves and hold in every [[include]], lists too.
 // Cells stand in the order of the product, the key written last varying fastest, then those of every [[include]]; a round is all
 // of them, so that what drifts meanwhile meets all cells alike.
 #pragma once
@@ -38,7 +41,7 @@ struct CampaignCell {
 inline constexpr int kMostCells = 100000;
 
 // Throws std::invalid_argument "spec.toml:7: bodys: ...": no TOML, an unknown key (and the nearest one), a value that `run`
-// would refuse before it makes anything, a rule that removes nothing, two cells of one name, no cell at all, more than kMostCells.
+// would refuse before it makes anything, a rule that removes or adds nothing, a dimension that makes a cell twice, no cell at all, more than kMostCells.
 // file: what errors call the text.
 std::vector<CampaignCell> parse_campaign(const std::string& text, const std::string& file);
 

@@ -184,12 +184,7 @@ class Sweep {
       // It did not come to a manifest.
     }
     row.build = campaign_.build();
-    if (cell.timed_out) {
-      row.status = to_string(SolveStatus::timeout);
-      row.reason = "took longer than " + number_text(options_.cell_seconds) + " s";
-    } else {
-      take_failure(end, row);
-    }
+    take_failure(end, cell.timed_out ? std::optional(options_.cell_seconds) : std::nullopt, row);
     write_log(row, end);
     return row;
   }

@@ -74,6 +74,13 @@ void check_threads(const SweepOptions& options, const Spec& spec) {
                                   " threads of cell " + cell.name());
 }
 
+void check_shard(const SweepOptions& options, const Spec& spec) {
+  if (options.shard > std::ssize(spec.cells))
+    throw std::invalid_argument("--shard: share " + std::to_string(options.shard) + " of " +
+                                std::to_string(options.shards) + " has none of the " +
+                                std::to_string(spec.cells.size()) + " cells");
+}
+
 std::string about(const std::optional<double>& seconds) {
   return seconds ? ", about " + seconds_text(*seconds) : "";
 }
@@ -133,6 +140,7 @@ int sweep(const Given& given, const std::string& program) {
   Spec spec{read_spec(options.spec), {}};
   spec.cells = parse_campaign(spec.text, options.spec);
   check_threads(options, spec);
+  check_shard(options, spec);
   const fs::path share = share_directory(options.out, options.shard, options.shards);
   if (!options.out.empty()) check_campaign_directory(options.out);
   if (given.dry_run) return print_cells(options, Campaign(options, spec));

@@ -81,6 +81,22 @@ TEST(CampaignSpec, InclusionAddsAGridAndTakesOverKeysOfOneValue) {
   EXPECT_EQ(column(cells, "mu"), Words({"0.3", "0.3", "0.3", "0.4"}));
 }
 
+TEST(CampaignSpec, ACellOfTwoSeriesRunsOnce) {
+  const auto cells = cells_of(
+      "[[include]]\nscene = 'rock_pile'\nbodies = [4, 5]\n"
+      "[[include]]\nscene = 'rock_pile'\nmu = 0.5\nbodies = [5, 6]\n");
+  EXPECT_EQ(column(cells, "bodies"), Words({"4", "5", "6"}));
+}
+
+TEST(CampaignSpec, WithoutASceneTheKeysAreForWhatIsIncluded) {
+  const auto cells = cells_of(
+      "seed = [1, 2]\nmu = 0.3\n[[include]]\nscene = 'rock_pile'\nbodies = [4, 5]\n"
+      "[[include]]\nscene = 'log_tower'\nseed = 7\n");
+  EXPECT_EQ(column(cells, "bodies"), Words({"4", "4", "5", "5", "-"}));
+  EXPECT_EQ(column(cells, "seed"), Words({"1", "2", "1", "2", "7"}));
+  EXPECT_EQ(column(cells, "mu"), Words(5, "0.3"));
+}
+
 TEST(CampaignSpec, RoundsAreInterleaved) {
   const auto cells = cells_of("rounds = 2\n" + kRocks + "bodies = [10, 20]\n");
   EXPECT_EQ(column(cells, "bodies"), Words({"10", "20", "10", "20"}));
@@ -110,7 +126,7 @@ TEST(CampaignSpec, ErrorsNameFileLineKeyAndTheNearestKey) {
       {kRocks + "\nmu = [0.5, -1]\n", "c.toml:3: mu: -1 is not in [0, inf)"},
       {kRocks + "solver = 'densse'\n", "c.toml:2: solver: 'densse' is unknown (did you mean 'dense'?)"},
       {kRocks + "layers = 4\n", "c.toml:2: layers: "},
-      {"bodies = 4\n", "c.toml:1: cell 1: --scene: is required"},
+      {"bodies = 4\n", "c.toml: has no cell; the key scene is required"},
       {kRocks + "bodies = []\n", "c.toml:2: bodies: an empty list makes no cell"},
       {kRocks + "bodies = ''\n", "c.toml:2: bodies: is not a text, a number"},
       {kRocks + "bodies = [[4]]\n", "c.toml:2: bodies: is not a text, a number"},
@@ -134,7 +150,8 @@ TEST(CampaignSpec, ErrorsNameFileLineKeyAndTheNearestKey) {
       {kRocks + "[[include]]\n", "c.toml:2: include: has no key"},
       {kRocks + "[include]\nbodies = 4\n", "c.toml:2: include: is not a list of tables: [[include]]"},
       {kRocks + "bodies = [4, 4]\n", "cell 2: is there already"},
-      {kRocks + "[[include]]\nbodies = 200\n", "c.toml:2: cell 2: is there already"},
+      {kRocks + "[[include]]\nbodies = 200\n", "c.toml:2: include: adds no cell that is not there already"},
+      {kRocks + "[[include]]\nmemory-limit = 2\n", "c.toml:2: cell 2: is there already"},
       {kRocks + "rounds = 0\n", "c.toml:2: rounds: 0 is not in [1, 1000]"},
       {kRocks + "rounds = 'x'\n", "c.toml:2: rounds: "},
       {"", "c.toml: has no cell"},
