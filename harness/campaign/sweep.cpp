@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "harness/base/numbers.h"
+#include "harness/base/printable_text.h"
 #include "harness/base/progress.h"
 #include "harness/campaign/cell_process.h"
 #include "harness/campaign/cell_result.h"
@@ -63,6 +64,8 @@ class Sweep {
     const SignalsWaitedFor signals;
     fs::create_directories(fs::path(options_.out) / kCellsFolder);
     write_whole_file(share_ / kSpecFile, spec_text);
+    for (const IndexRow& row : campaign_.all_rows())
+      if (!row.is_pending()) unlock(cell_directory(row));
     save_index();
     while (start_cells(), !running_.empty()) {
       const int signal = signals.wait(kLookEvery_s);
@@ -84,8 +87,8 @@ class Sweep {
   }
 
   void start_cell(std::size_t place) {
-    IndexRow& row = campaign_.rows()[place];
-    const fs::path directory = fs::path(options_.out) / kCellsFolder / row.cell;
+    const IndexRow& row = campaign_.rows()[place];
+    const fs::path directory = cell_directory(row);
     if (is_run_elsewhere(directory)) {
       ++summary_.elsewhere;
       return;
@@ -103,6 +106,20 @@ class Sweep {
     command.words.push_back("--force");
     running_.emplace_back(place, free_slots_.back(), command);
     free_slots_.pop_back();
+  }
+
+  fs::path cell_directory(const IndexRow& row) const {
+    return fs::path(options_.out) / kCellsFolder / row.cell;
+  }
+
+  // A run that was killed after its last file and before its lock is complete, and the file of the lock is not of it.
+  static void unlock(const fs::path& directory) {
+    if (!fs::exists(directory / kLockFile) || is_run_elsewhere(directory)) return;
+    try {
+      const DirectoryLock lock(directory, "cleave sweep");
+    } catch (const std::invalid_argument& of_another_host) {
+      say(of_another_host.what());
+    }
   }
 
   static bool is_run_elsewhere(const fs::path& directory) {
@@ -176,7 +193,7 @@ class Sweep {
 
   IndexRow failed_row(const RunningCell& cell, const CellEnd& end) const {
     IndexRow row = campaign_.rows()[cell.place];
-    const fs::path directory = fs::path(options_.out) / kCellsFolder / row.cell;
+    const fs::path directory = cell_directory(row);
     if (seal(directory)) row.checksums = sha256_of(directory / kChecksumsFile);
     try {
       take_result(directory, read_manifest(directory / kManifestFile), row);

@@ -8,13 +8,15 @@
 #include <algorithm>
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <random>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <thread>
 
-#include "harness/campaign/spec.h"
+#include "harness/campaign/campaign_index.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -83,6 +85,7 @@ struct Group {
     if (process == 0) {
       ::setpgid(0, 0);
       const pid_t sweep = start_cleave(words);
+      ::signal(SIGINT, SIG_IGN);
       int status = 0;
       ::waitpid(sweep, &status, 0);
       ::_exit(WIFEXITED(status) ? WEXITSTATUS(status) : 99);
@@ -102,6 +105,12 @@ std::vector<pid_t> children_of(pid_t process) {
 }
 
 void pause_ms(int milliseconds) { std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds)); }
+
+pid_t wait_for_child(pid_t process) {
+  for (int k = 0; k < 5000; ++k, pause_ms(2))
+    if (const auto children = children_of(process); !children.empty()) return children.front();
+  return -1;
+}
 
 // The one process of a sweep's cell, once that has begun to run.
 pid_t wait_for_cell(pid_t sweep, const fs::path& cells) {
@@ -194,6 +203,16 @@ TEST(Sweep, ACellIsDoneAgainWhereItsFilesAreNotThose) {
   ASSERT_EQ(campaign.sweep().exit_code, 0);
   fs::remove(campaign.cell(0) / "checksums");
   EXPECT_NE(campaign.sweep().err.find("2 ok; 1 kept\n"), std::string::npos);
+  EXPECT_EQ(campaign.failures(), "");
+}
+
+// As a run leaves it that was killed after its last file.
+TEST(Sweep, ALockThatNobodyHoldsGoesFromACompleteCell) {
+  const Campaign campaign(kTiny);
+  ASSERT_EQ(campaign.sweep().exit_code, 0);
+  std::ofstream(campaign.cell() / "cleave.lock") << "";
+  EXPECT_NE(campaign.failures(), "");
+  EXPECT_NE(campaign.sweep().err.find("1 kept\n"), std::string::npos);
   EXPECT_EQ(campaign.failures(), "");
 }
 
@@ -314,6 +333,18 @@ TEST(Sweep, AnInterruptReachesTheCellAndIsResumed) {
     fs::remove(campaign.cell() / "steps.csv");  // which the next wait looks for
   }
   EXPECT_NE(campaign.failures().find("pending: the campaign is incomplete"), std::string::npos);
+}
+
+// The keyboard sends it to the whole group; a cell that got two would end without its last word.
+TEST(Sweep, AnInterruptOfTheGroupReachesACellOnce) {
+  const Campaign campaign(kEndless);
+  const Group group(campaign.words({}));
+  const pid_t sweep = wait_for_child(group.process);
+  ASSERT_GT(wait_for_cell(sweep, campaign.out() / "cells"), 0);
+  group.send(SIGINT);
+  EXPECT_EQ(finish_cleave(group.process), 130);
+  EXPECT_NE(read_text(campaign.cell() / "manifest.json").find("\"state\": \"interrupted\""),
+            std::string::npos);
 }
 
 TEST(Sweep, ASecondSignalEndsItAndItsCellsAtOnce) {
@@ -466,6 +497,17 @@ void flip_byte(const fs::path& path, std::size_t place) {
   file.put(byte);
 }
 
+// Of the rows of a table of harness/README.md.
+std::vector<std::string> first_cells(const std::string& head) {
+  std::istringstream readme(read_text(fs::path(CLEAVE_SOURCE_DIR) / "harness/README.md"));
+  std::vector<std::string> cells;
+  std::string line;
+  while (std::getline(readme, line) && !line.starts_with(head)) continue;
+  while (std::getline(readme, line) && line.starts_with("|"))
+    if (!line.starts_with("|---")) cells.push_back(line.substr(2, line.find(" |", 2) - 2));
+  return cells;
+}
+
 TEST(SweepVerify, FindsEveryDamagedByteOfACampaign) {
   const Campaign campaign(std::string(kEndless) + "[[include]]\nsteps = 4\nmeasure-every = 2\n");
   ASSERT_EQ(campaign.sweep({"--cell-seconds", "0.3"}).exit_code, 2);
@@ -518,26 +560,85 @@ TEST(SweepVerify, FindsAnIndexThatSaysSomethingElse) {
   EXPECT_EQ(campaign.failures(), "");
 }
 
-TEST(SweepVerify, FindsWhatIsMissingOrTooMuch) {
+// Each check of the table in harness/README.md is broken here.
+TEST(SweepVerify, EveryCheckOfTheTableCanFail) {
+  struct Breakage {
+    std::string check, failure;
+    std::function<void(const Campaign&)> spoil;
+  };
+  const Breakage breakages[] = {
+      {"nothing else", "1of2 has no index",
+       [](const Campaign& c) { fs::create_directories(c.out() / "shards/1of2"); }},
+      {"index", "index.csv: is missing", [](const Campaign& c) { fs::remove(c.out() / "index.csv"); }},
+      {"rows of the index", "index.csv: readable; ",
+       [](const Campaign& c) {
+         std::ofstream(c.out() / "index.csv", std::ios::app) << "a,b\n";
+         seal_again(c.out());
+       }},
+      {"cells of the spec", "has the cells of spec.toml; it has another number of cells",
+       [](const Campaign& c) {
+         std::ofstream(c.out() / "spec.toml") << kTiny << "seed = [1, 2, 3]\n";
+         seal_again(c.out());
+       }},
+      {"ended", "pending: the campaign is incomplete",
+       [](const Campaign& c) {
+         fs::remove_all(c.cell());
+         std::string text = read_text(c.out() / "index.csv");
+         text.replace(text.find(",ok,"), 4, ",pending,");
+         std::ofstream(c.out() / "index.csv") << text;
+         seal_again(c.out());
+       }},
+      {"vouched for", "are not those of the index",
+       [](const Campaign& c) { fs::rename(c.cell(1), c.path() / "moved"); }},
+      {"row of a cell", "is as the index says; its directory gives ",
+       [](const Campaign& c) {
+         std::string text = read_text(c.out() / "index.csv");
+         text.replace(text.find(",ok,-,2,2,"), 10, ",ok,-,3,3,");
+         std::ofstream(c.out() / "index.csv") << text;
+         seal_again(c.out());
+       }},
+      {"names", "other is in no index",
+       [](const Campaign& c) { fs::create_directory(c.out() / "cells/other"); }},
+  };
+  std::vector<std::string> broken;
+  for (const Breakage& breakage : breakages) {
+    const Campaign campaign(std::string(kTiny) + "seed = [1, 2]\n");
+    ASSERT_EQ(campaign.sweep().exit_code, 0);
+    breakage.spoil(campaign);
+    EXPECT_NE(campaign.failures().find(breakage.failure), std::string::npos) << breakage.check << " says:\n"
+                                                                             << campaign.failures();
+    broken.push_back(breakage.check);
+  }
+  EXPECT_EQ(broken, first_cells("| check of a campaign |"));
+  const std::string text = read_text(fs::path(CLEAVE_SOURCE_DIR) / "harness/commands/verify_campaign.cpp");
+  std::size_t calls = 0;
+  for (std::size_t at = text.find("list.add("); at != std::string::npos; at = text.find("list.add(", at + 1))
+    ++calls;
+  EXPECT_EQ(calls, broken.size());
+}
+
+TEST(SweepVerify, NamesFilesAndLogsThatNobodyKnows) {
   const Campaign campaign(std::string(kTiny) + "seed = [1, 2]\n");
   ASSERT_EQ(campaign.sweep().exit_code, 0);
-  fs::create_directory(campaign.out() / "cells/other");
-  EXPECT_NE(campaign.failures().find("other is in no index"), std::string::npos);
-  fs::remove(campaign.out() / "cells/other");
   std::ofstream(campaign.out() / "note.txt") << "x";
   EXPECT_NE(campaign.failures().find("note.txt is not of this run"), std::string::npos);
   fs::remove(campaign.out() / "note.txt");
   fs::create_directory(campaign.out() / "failed");
-  std::ofstream(campaign.out() / "failed" / (campaign.index().at(0, "cell") + ".log")) << "x";
+  std::ofstream(campaign.log()) << "x";
   EXPECT_NE(campaign.failures(), "");
   fs::remove_all(campaign.out() / "failed");
-  fs::rename(campaign.cell(1), campaign / "moved");
-  EXPECT_NE(campaign.failures(), "");
-  fs::rename(campaign / "moved", campaign.cell(1));
-  fs::rename(campaign.out() / "index.csv", campaign / "index.csv");
-  EXPECT_NE(campaign.failures(), "");
-  fs::rename(campaign / "index.csv", campaign.out() / "index.csv");
   EXPECT_EQ(campaign.failures(), "");
+}
+
+TEST(CampaignIndex, EveryColumnIsInTheReadme) {
+  std::vector<std::string> listed;
+  static const std::regex name("`([a-z_]+)`");
+  for (const std::string& cell : first_cells("| column of `index.csv` |"))
+    for (std::sregex_iterator match(cell.begin(), cell.end(), name), end; match != end; ++match)
+      listed.push_back((*match)[1]);
+  std::vector<std::string> columns;
+  for (const Column& column : index_columns()) columns.push_back(column.name);
+  EXPECT_EQ(listed, columns);
 }
 
 TEST(Rerun, RepeatsACellAndHoldsItsRowsAgainstIt) {
