@@ -48,6 +48,10 @@ TEST(CampaignSpec, ATextWithCommasIsOneValue) {
 TEST(CampaignSpec, RangesHaveBothEndsAndNoRoundingErrors) {
   EXPECT_EQ(column(cells_of(kRocks + "mu = { from = 0, to = 0.5, step = 0.1 }\n"), "mu"),
             Words({"0", "0.1", "0.2", "0.3", "0.4", "0.5"}));
+  EXPECT_EQ(column(cells_of(kRocks + "mu = { from = 0, to = 0.3, step = 0.1 }\n"), "mu"),
+            Words({"0", "0.1", "0.2", "0.3"}));
+  EXPECT_EQ(column(cells_of(kRocks + "mu = { from = 0, to = 0.29, step = 0.1 }\n"), "mu"),
+            Words({"0", "0.1", "0.2"}));
   EXPECT_EQ(column(cells_of(kRocks + "cfm = { from = 1e-9, to = 1e-5, factor = 10 }\n"), "cfm"),
             Words({"1e-09", "1e-08", "1e-07", "1e-06", "1e-05"}));
   EXPECT_EQ(column(cells_of(kRocks + "bodies = { from = 50, to = 849, factor = 2 }\n"), "bodies"),

@@ -129,6 +129,14 @@ bool is_gone(pid_t process) {
   return false;
 }
 
+void flip_byte(const fs::path& path, std::size_t place) {
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekg(static_cast<std::streamoff>(place));
+  const char byte = static_cast<char>(file.get() ^ 4);
+  file.seekp(static_cast<std::streamoff>(place));
+  file.put(byte);
+}
+
 TEST(Sweep, RunsEveryCellAsRunDoes) {
   const Campaign campaign(std::string(kTiny) + "seed = [1, 2]\nthreads = [1, 2]\n");
   const ProgramResult result = campaign.sweep();
@@ -202,6 +210,9 @@ TEST(Sweep, ACellIsDoneAgainWhereItsFilesAreNotThose) {
   const Campaign campaign(std::string(kTiny) + "seed = [1, 2]\n");
   ASSERT_EQ(campaign.sweep().exit_code, 0);
   fs::remove(campaign.cell(0) / "checksums");
+  EXPECT_NE(campaign.sweep().err.find("2 ok; 1 kept\n"), std::string::npos);
+  flip_byte(campaign.cell(1) / "steps.csv", 3000);
+  fs::remove(campaign.out() / "index.csv");
   EXPECT_NE(campaign.sweep().err.find("2 ok; 1 kept\n"), std::string::npos);
   EXPECT_EQ(campaign.failures(), "");
 }
@@ -487,14 +498,6 @@ TEST(Sweep, QuietSaysNothingWhereAllIsWell) {
   const ProgramResult result = campaign.sweep({"--quiet"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_EQ(result.err + result.out, "");
-}
-
-void flip_byte(const fs::path& path, std::size_t place) {
-  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
-  file.seekg(static_cast<std::streamoff>(place));
-  const char byte = static_cast<char>(file.get() ^ 4);
-  file.seekp(static_cast<std::streamoff>(place));
-  file.put(byte);
 }
 
 // Of the rows of a table of harness/README.md.
