@@ -92,15 +92,19 @@ void take_result(const fs::path& directory, const StoredManifest& manifest, Inde
   if (manifest.state == "complete") take_status(directory, manifest, row);
 }
 
-void take_if_complete(const fs::path& out, IndexRow& row) {
+std::optional<StoredManifest> take_if_complete(const fs::path& out, IndexRow& row) {
   const fs::path directory = out / kCellsFolder / row.cell;
+  std::error_code none;
+  if (!fs::exists(directory / kChecksumsFile, none)) return std::nullopt;  // of a run, the last file
   try {
-    const StoredManifest manifest = read_manifest(directory / kManifestFile);
-    if (manifest.state != "complete" || manifest.run_id != row.run_id || !is_sealed(directory)) return;
+    StoredManifest manifest = read_manifest(directory / kManifestFile);
+    if (manifest.state != "complete" || manifest.run_id != row.run_id || !is_sealed(directory))
+      return std::nullopt;
     row.checksums = sha256_of(directory / kChecksumsFile);
     take_result(directory, manifest, row);
+    return manifest;
   } catch (const std::exception&) {
-    // What cannot be read is not complete.
+    return std::nullopt;  // what cannot be read is not complete
   }
 }
 
@@ -108,18 +112,14 @@ double seconds_of(const IndexRow& row) { return std::isnan(row.process_s) ? row.
 
 std::optional<IndexRow> complete_row(const fs::path& out, const CampaignCell& cell, int number,
                                      const std::string& build) {
-  const fs::path directory = out / kCellsFolder / cell.name();
-  std::error_code none;
-  if (!fs::exists(directory / kChecksumsFile, none)) return std::nullopt;  // of a run, the last file
   IndexRow row = pending_row(cell, number);
-  take_if_complete(out, row);
-  const auto has_options = [&] {
-    const StoredManifest manifest = read_manifest(directory / kManifestFile);
-    return manifest.command == "run" && std::ranges::all_of(cell.beside_run_id, [&](const auto& option) {
-             return manifest.option(option.first) == (option.second == "nan" ? "" : option.second);
-           });
+  const std::optional<StoredManifest> manifest = take_if_complete(out, row);
+  const auto is_same = [&](const auto& option) {
+    return manifest->option(option.first) == (option.second == "nan" ? "" : option.second);
   };
-  return row.is_pending() || row.build != build || !has_options() ? std::nullopt : std::optional(row);
+  const bool is_this = manifest && manifest->command == "run" && row.build == build &&
+                       std::ranges::all_of(cell.beside_run_id, is_same);
+  return is_this ? std::optional(row) : std::nullopt;
 }
 
 fs::path log_path(const fs::path& out, const IndexRow& row) {

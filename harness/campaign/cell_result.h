@@ -19,8 +19,8 @@ IndexRow pending_row(const CampaignCell& cell, int number);
 // only where the run came to its end. Throws std::invalid_argument or std::runtime_error for files that cannot be read.
 void take_result(const std::filesystem::path& directory, const StoredManifest& manifest, IndexRow& row);
 
-// The same where a complete run of that run id is there, whichever build made it; else the row stays as it is.
-void take_if_complete(const std::filesystem::path& out, IndexRow& row);
+// The same, and the manifest, where a complete run of that run id is there, whichever build made it; else the row is of no use.
+std::optional<StoredManifest> take_if_complete(const std::filesystem::path& out, IndexRow& row);
 
 // Of its process, or of the run where that is not known.
 double seconds_of(const IndexRow& row);

@@ -1,6 +1,7 @@
 // What a campaign's TOML file expands to, written out by hand, and the errors of files that are wrong.
 #include <gtest/gtest.h>
 
+#include <random>
 #include <set>
 
 #include "harness/campaign/spec.h"
@@ -172,6 +173,38 @@ TEST(CampaignSpec, NoErrorIsLongerThanALine) {
     EXPECT_EQ(error_of(text).find('\n'), std::string::npos) << error_of(text);
   EXPECT_THROW(read_spec("/nonexistent/spec.toml"), std::invalid_argument);
   EXPECT_THROW(read_spec("/"), std::invalid_argument);
+}
+
+// Damaged files are expanded or refused, and nothing else.
+TEST(CampaignSpec, DamagedFilesAreExpandedOrRefused) {
+  const std::string good =
+      "rounds = 2\n" + kRocks +
+      "bodies = [4, 5]\nmu = { from = 1, to = 3, step = 1 }\nskip-small-islands = true\n" +
+      "partitioner = 'mindp,mix@tau-mix=0.5'\n[[exclude]]\nbodies = 4\nmu = [1, 2]\n[[include]]\nbodies = "
+      "7\n";
+  std::mt19937 random(3);
+  int expanded = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    std::string text = good;
+    for (unsigned edits = 1 + random() % 2; edits > 0; --edits) {
+      const std::size_t place = random() % text.size();
+      switch (random() % 3) {
+        case 0:
+          text[place] = "=[]{}'\"\n,.#-5ax\0\xff"[random() % 17];
+          break;
+        case 1:
+          text.erase(place, 1 + random() % 8);
+          break;
+        default:
+          text.insert(place, text.substr(random() % text.size(), 1 + random() % 8));
+      }
+      if (text.empty()) text = " ";
+    }
+    const std::string error = error_of(text);
+    expanded += error == "no error";
+    EXPECT_TRUE(error == "no error" || error.starts_with("c.toml:")) << text << error;
+  }
+  EXPECT_GT(expanded, 20);
 }
 
 TEST(CampaignSpec, AThousandCellsHaveAsManyNames) {
