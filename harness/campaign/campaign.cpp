@@ -71,7 +71,7 @@ Campaign::RowsByName Campaign::read_indexes() const {
   return known;
 }
 
-IndexRow Campaign::row_of(const CampaignCell& cell, int number, const RowsByName& known) const {
+IndexRow Campaign::row_of(const CampaignCell& cell, int number, const RowsByName& known) {
   IndexRow pending = pending_row(cell, number);
   if (options_.force) return pending;
   if (const auto found = known.find(pending.cell); found != known.end()) {
@@ -83,7 +83,10 @@ IndexRow Campaign::row_of(const CampaignCell& cell, int number, const RowsByName
       return row;
     }
   }
-  return complete_row(options_.out, cell, number, build_).value_or(pending);
+  if (const auto complete = complete_row(options_.out, cell, number, build_)) return *complete;
+  if (const auto found = known.find(pending.cell); found != known.end())
+    of_other_build_ += !found->second.is_pending() && found->second.build != build_;
+  return pending;
 }
 
 // Cells that ran for a spec that had others.

@@ -51,7 +51,8 @@ class Campaign {
   const std::vector<IndexRow>& rows() const { return rows_; }
   const std::vector<IndexRow>& earlier() const { return earlier_; }  // of earlier specs, complete
   const std::string& build() const { return build_; }
-  CellTimes times() const;  // of the cells that have ended
+  int of_other_build() const { return of_other_build_; }  // pending cells that another build has done
+  CellTimes times() const;                                // of the cells that have ended
   // For those that are pending, so many at a time; nothing before the first has ended.
   std::optional<double> seconds_left(const CellTimes& times, int jobs) const;
 
@@ -60,11 +61,12 @@ class Campaign {
  private:
   using RowsByName = std::map<std::string, IndexRow>;
   RowsByName read_indexes() const;
-  IndexRow row_of(const CampaignCell& cell, int number, const RowsByName& known) const;
+  IndexRow row_of(const CampaignCell& cell, int number, const RowsByName& known);
   void keep_earlier(const std::vector<CampaignCell>& all);
 
   SweepOptions options_;
   std::string build_;
+  int of_other_build_ = 0;
   std::vector<CampaignCell> cells_;
   std::vector<IndexRow> rows_, earlier_;
 };

@@ -42,8 +42,7 @@ void read_shard(const std::string& text, SweepOptions& options) {
 
 SweepOptions read_options(const Given& given, const std::string& program) {
   if (given.spec.empty()) throw std::invalid_argument("SPEC: a campaign's TOML file is required");
-  if (given.out.empty() && !given.dry_run)
-    throw std::invalid_argument("--out: is required: the campaign's directory");
+  if (given.out.empty()) throw std::invalid_argument("--out: is required: the campaign's directory");
   SweepOptions options;
   options.spec = given.spec;
   options.out = given.out;
@@ -108,6 +107,8 @@ int print_cells(const SweepOptions& options, const Campaign& campaign) {
 void say_what_is_kept(const Campaign& campaign) {
   const std::size_t kept = campaign.cells().size() - static_cast<std::size_t>(pending_of(campaign));
   if (kept > 0) say(std::to_string(kept) + " cells are done and kept");
+  if (campaign.of_other_build() > 0)
+    say(std::to_string(campaign.of_other_build()) + " cells are of another build and run again");
   if (!campaign.earlier().empty())
     say(std::to_string(campaign.earlier().size()) +
         " cells of an earlier spec are not in this one; they stay");
@@ -142,7 +143,7 @@ int sweep(const Given& given, const std::string& program) {
   check_threads(options, spec);
   check_shard(options, spec);
   const fs::path share = share_directory(options.out, options.shard, options.shards);
-  if (!options.out.empty()) check_campaign_directory(options.out);
+  check_campaign_directory(options.out);
   if (given.dry_run) return print_cells(options, Campaign(options, spec));
   check_output_directory(share.string(), true, {});
   create_output_directory(share.string());

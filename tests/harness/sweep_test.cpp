@@ -137,6 +137,12 @@ void flip_byte(const fs::path& path, std::size_t place) {
   file.put(byte);
 }
 
+// Checksums made anew to match: what is left is what the files say of each other.
+void seal_again(const fs::path& directory) {
+  run_program("/bin/sh", {"-c", "cd '" + directory.string() +
+                                    "' && sha256sum $(cut -c67- checksums) > new && mv new checksums"});
+}
+
 TEST(Sweep, RunsEveryCellAsRunDoes) {
   const Campaign campaign(std::string(kTiny) + "seed = [1, 2]\nthreads = [1, 2]\n");
   const ProgramResult result = campaign.sweep();
@@ -225,6 +231,35 @@ TEST(Sweep, ALockThatNobodyHoldsGoesFromACompleteCell) {
   EXPECT_NE(campaign.failures(), "");
   EXPECT_NE(campaign.sweep().err.find("1 kept\n"), std::string::npos);
   EXPECT_EQ(campaign.failures(), "");
+}
+
+// The index of a build with local changes names the program itself; here it is as if another one had been there.
+TEST(Sweep, CellsOfAnotherBuildRunAgainAndThatIsSaid) {
+  const Campaign campaign(kTiny);
+  ASSERT_EQ(campaign.sweep().exit_code, 0);
+  std::string manifest = read_text(campaign.cell() / "manifest.json");
+  const std::size_t flags = manifest.find("\"flags\": \"") + 10;
+  manifest.insert(flags, "-O0 ");
+  std::ofstream(campaign.cell() / "manifest.json") << manifest;
+  seal_again(campaign.cell());
+  std::string index = read_text(campaign.out() / "index.csv");
+  const std::string build = campaign.index().at(0, "build");
+  index.replace(index.find(build), build.size(), "0123456789abcdef");
+  std::ofstream(campaign.out() / "index.csv") << index;
+  seal_again(campaign.out());
+  const ProgramResult result = campaign.sweep();
+  EXPECT_NE(result.err.find("1 cells are of another build and run again\n"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("1 ok; 0 kept\n"), std::string::npos) << result.err;
+  EXPECT_EQ(campaign.index().at(0, "build"), build);
+}
+
+TEST(Sweep, CellsAreBoundToCores) {
+  const Campaign campaign(kTiny);
+  ASSERT_EQ(campaign.sweep({"--pin", "1"}).exit_code, 0);
+  EXPECT_NE(read_text(campaign.cell() / "manifest.json").find("\"cores\": 1,"), std::string::npos);
+  campaign.write_spec(std::string(kTiny) + "threads = 2\n");
+  EXPECT_NE(campaign.sweep({"--pin", "1"}).err.find("--pin: 1 is less than the 2 threads of cell "),
+            std::string::npos);
 }
 
 TEST(Sweep, ADryRunPrintsCellsAndCreatesNothing) {
@@ -528,12 +563,6 @@ TEST(SweepVerify, FindsEveryDamagedByteOfACampaign) {
       flip_byte(file, place);
     }
   EXPECT_EQ(campaign.failures(), "");
-}
-
-// Checksums made anew to match: what is left is what the files say of each other.
-void seal_again(const fs::path& directory) {
-  run_program("/bin/sh", {"-c", "cd '" + directory.string() +
-                                    "' && sha256sum $(cut -c67- checksums) > new && mv new checksums"});
 }
 
 TEST(SweepVerify, FindsAnIndexThatSaysSomethingElse) {

@@ -32,7 +32,7 @@ def options_of(arguments):
 
 def cells(name):
     """Options of every cell."""
-    printed = sweep(FOLDER / f"{name}.toml", "--dry-run")
+    printed = sweep(FOLDER / f"{name}.toml", "--dry-run", "--out", "/nonexistent")
     assert printed.returncode == 0, printed.stderr
     return [options_of(row["arguments"]) for row in csv.DictReader(io.StringIO(printed.stdout))]
 
