@@ -10,7 +10,6 @@
 
 #include "harness/base/hash.h"
 #include "scenarios/file_body_reader.h"
-#include "scenarios/file_characters.h"
 #include "scenarios/file_joint_reader.h"
 #include "scenarios/file_values.h"
 
@@ -18,17 +17,6 @@ namespace cleave::scene_file {
 namespace {
 
 const Range kLayer_m{0, 1e-2};
-
-toml::table parsed_toml(const std::string& text, const std::string& name) {
-  check_characters(text, name);
-  try {
-    return toml::parse(text, name);
-  } catch (const toml::parse_error& error) {
-    reject_at(name, error.source(), "not TOML", std::string(error.description()));
-  } catch (const TomlAssertion&) {
-    throw std::invalid_argument(name + ": not TOML: the parser gives up on it");
-  }
-}
 
 // The tables of an array of tables; none where there is no such key.
 std::vector<Value> tables(Table& file, const std::string& key) {

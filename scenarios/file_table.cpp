@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "harness/base/names.h"
+#include "scenarios/file_characters.h"
 
 namespace cleave::scene_file {
 namespace {
@@ -24,6 +25,17 @@ void throw_toml_assertion() { throw TomlAssertion(); }
 void reject_at(const std::string& file, const toml::source_region& source, const std::string& key,
                const std::string& text) {
   throw std::invalid_argument(file + ":" + std::to_string(source.begin.line) + ": " + key + ": " + text);
+}
+
+toml::table parsed_toml(const std::string& text, const std::string& name) {
+  check_characters(text, name);
+  try {
+    return toml::parse(text, name);
+  } catch (const toml::parse_error& error) {
+    reject_at(name, error.source(), "not TOML", std::string(error.description()));
+  } catch (const TomlAssertion&) {
+    throw std::invalid_argument(name + ": not TOML: the parser gives up on it");
+  }
 }
 
 void Value::reject(const std::string& text) const { reject_at(*file_, node_->source(), key_, text); }

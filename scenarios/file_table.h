@@ -24,6 +24,9 @@ namespace cleave::scene_file {
 [[noreturn]] void reject_at(const std::string& file, const toml::source_region& source,
                             const std::string& key, const std::string& text);
 
+// Throws the same of a text that is no TOML, with "not TOML" for the key.
+toml::table parsed_toml(const std::string& text, const std::string& name);
+
 class Table;
 
 // One value and the key it stands under ("body.edges_m[2]"). What is asked for must be there, or it throws.

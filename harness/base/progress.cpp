@@ -13,16 +13,26 @@ ProgressLine::~ProgressLine() {
   if (terminal_ && shown_) std::fputc('\n', stderr);
 }
 
+bool ProgressLine::is_due() const { return Clock::now() - last_ >= std::chrono::seconds(terminal_ ? 1 : 10); }
+
 void ProgressLine::update(int done, int total) {
-  const Clock::time_point now = Clock::now();
-  const std::chrono::seconds interval(terminal_ ? 1 : 10);
-  if (now - last_ < interval) return;
-  last_ = now;
-  shown_ = true;
-  const double elapsed_s = std::chrono::duration<double>(now - begin_).count();
+  if (!is_due()) return;
+  const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin_).count();
   const double left_s = elapsed_s / done * (total - done);
-  std::fprintf(stderr, "%s%s: step %d of %d, %.0f s, about %.0f s to go%s", terminal_ ? "\r" : "",
-               label_.c_str(), done, total, elapsed_s, left_s, terminal_ ? "   " : "\n");
+  char text[100];
+  std::snprintf(text, sizeof text, "step %d of %d, %.0f s, about %.0f s to go", done, total, elapsed_s,
+                left_s);
+  show(text);
+}
+
+void ProgressLine::show(const std::string& text) {
+  last_ = Clock::now();
+  shown_ = true;
+  std::string line = label_ + ": " + text;
+  const std::size_t width = line.size();
+  if (terminal_ && width < width_) line.append(width_ - width, ' ');  // over what stands there
+  width_ = width;
+  std::fprintf(stderr, "%s%s%s", terminal_ ? "\r" : "", line.c_str(), terminal_ ? "" : "\n");
   std::fflush(stderr);
 }
 

@@ -1,5 +1,5 @@
-// The progress line on the terminal: steps done, elapsed and expected time. Rewritten in place about once a
-// second on a terminal, else a line of its own about every ten seconds. Silent for runs that are over sooner.
+// The progress line on the terminal. Rewritten in place about once a second on a terminal, else a line of its own about
+// every ten seconds. Silent for work that is over sooner.
 #pragma once
 
 #include <chrono>
@@ -14,13 +14,18 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
+  // Steps done, elapsed and expected time.
   void update(int done, int total);
+  // For other work: whether it is time for a line, and the line behind the label.
+  bool is_due() const;
+  void show(const std::string& text);
 
  private:
   using Clock = std::chrono::steady_clock;
   std::string label_;
   bool terminal_;
   bool shown_ = false;
+  std::size_t width_ = 0;  // of the text that stands on the terminal
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_ = begin_;
 };

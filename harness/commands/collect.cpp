@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "harness/base/csv_text.h"
 #include "harness/base/names.h"
 #include "harness/base/printable_text.h"
 #include "harness/commands/check_arguments.h"

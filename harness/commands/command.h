@@ -34,6 +34,8 @@ std::function<int()> declare_list(CLI::App& app, const std::vector<std::string>&
 std::function<int()> declare_run(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_record(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_replay(CLI::App& app, const std::vector<std::string>& argv);
+std::function<int()> declare_sweep(CLI::App& app, const std::vector<std::string>& argv);
+std::function<int()> declare_rerun(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_export(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_calibrate(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_collect(CLI::App& app, const std::vector<std::string>& argv);

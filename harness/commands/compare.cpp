@@ -10,6 +10,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "harness/base/csv_text.h"
 #include "harness/base/hash.h"
 #include "harness/base/median.h"
 #include "harness/base/names.h"

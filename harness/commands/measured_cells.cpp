@@ -5,6 +5,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "harness/base/csv_text.h"
 #include "harness/commands/verify_table.h"
 #include "harness/experiment/step_record.h"
 #include "harness/files/manifest.h"

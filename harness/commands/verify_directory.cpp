@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "harness/commands/expected_rows.h"
+#include "harness/commands/verify_campaign.h"
 #include "harness/commands/verify_rows.h"
 #include "harness/files/checksums.h"
 #include "harness/files/directory_lock.h"
@@ -15,14 +16,6 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::vector<std::string> names_in(const fs::path& directory) {
-  std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(directory))
-    names.push_back(entry.path().filename());
-  std::ranges::sort(names);
-  return names;
-}
 
 bool is_problem_file(const fs::path& name) { return name.extension() == ".h5" && name != "motion.h5"; }
 
@@ -66,23 +59,24 @@ void check_listed_files(const fs::path& directory, const std::map<std::string, s
 }
 
 void check_other_files(const fs::path& directory, const std::map<std::string, std::string>& sums,
-                       CheckList& list) {
+                       const std::vector<std::string>& folders, CheckList& list) {
   std::string others;
   for (const std::string& name : names_in(directory))
-    if (!sums.contains(name) && name != kChecksumsFile) others += "; " + name + " is not of this run";
+    if (!sums.contains(name) && name != kChecksumsFile && std::ranges::count(folders, name) == 0)
+      others += "; " + name + " is not of this run";
   list.add(others.empty(), (directory / kChecksumsFile).string(),
            "names every file of the directory" + others);
 }
 
 // Nothing where the file is missing or no list of checksums.
-std::optional<std::map<std::string, std::string>> check_list_of_files(const fs::path& directory,
-                                                                      CheckList& list) {
+std::optional<std::map<std::string, std::string>> check_list_of_files(
+    const fs::path& directory, const std::vector<std::string>& required, CheckList& list) {
   std::optional<std::map<std::string, std::string>> sums;
   std::string error;
   try {
     sums = read_checksums(directory);
-    for (const char* name : {kManifestFile, "steps.csv"})
-      if (!sums->contains(name)) error += std::string("; ") + name + " is not in it";
+    for (const std::string& name : required)
+      if (!sums->contains(name)) error += "; " + name + " is not in it";
   } catch (const std::invalid_argument& wrong) {
     error = std::string("; ") + wrong.what();
   }
@@ -96,19 +90,7 @@ void check_run_id(const fs::path& directory, const StoredManifest& manifest, Che
            "run_id " + manifest.run_id + (found == manifest.run_id ? "" : "; its options give " + found));
 }
 
-// Whether what the files say is worth looking at.
-bool check_files(const fs::path& directory, CheckList& list) {
-  const int before = list.failures();
-  const auto sums = check_list_of_files(directory, list);
-  if (sums) {
-    check_listed_files(directory, *sums, list);
-    check_other_files(directory, *sums, list);
-  }
-  if (list.failures() == before) return true;
-  CheckList::note(directory.string(),
-                  "its files are not those that were written; what they say was not looked at");
-  return false;
-}
+const std::vector<std::string> kFilesOfRun = {kManifestFile, "steps.csv"};
 
 void check_problem_files(const fs::path& directory, CheckList& list) {
   for (const std::string& name : names_in(directory))
@@ -118,7 +100,30 @@ void check_problem_files(const fs::path& directory, CheckList& list) {
 
 }  // namespace
 
+std::vector<std::string> names_in(const fs::path& directory) {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory))
+    names.push_back(entry.path().filename());
+  std::ranges::sort(names);
+  return names;
+}
+
+bool check_files(const fs::path& directory, const std::vector<std::string>& required,
+                 const std::vector<std::string>& folders, CheckList& list) {
+  const int before = list.failures();
+  const auto sums = check_list_of_files(directory, required, list);
+  if (sums) {
+    check_listed_files(directory, *sums, list);
+    check_other_files(directory, *sums, folders, list);
+  }
+  if (list.failures() == before) return true;
+  CheckList::note(directory.string(),
+                  "its files are not those that were written; what they say was not looked at");
+  return false;
+}
+
 void verify_directory(const fs::path& directory, CheckList& list) {
+  if (is_campaign(directory)) return verify_campaign(directory, list);
   const std::vector<std::string> names = names_in(directory);
   const auto holds = [&](const char* name) { return std::ranges::count(names, name) > 0; };
   const bool is_run = holds("steps.csv") || holds(kManifestFile) || holds(kChecksumsFile);
@@ -127,12 +132,13 @@ void verify_directory(const fs::path& directory, CheckList& list) {
   if (!is_run) return check_problem_files(directory, list);
 
   // Checksums before all else: a damaged manifest cannot say that there were none.
-  if (holds(kChecksumsFile) && !check_files(directory, list)) return;
+  if (holds(kChecksumsFile) && !check_files(directory, kFilesOfRun, {}, list)) return;
   const auto manifest = check_manifest(directory, holds(kChecksumsFile), list);
   if (!manifest) return;
   check_state(directory, *manifest, list);
   const bool says_files = !manifest->files.empty();
-  if (says_files && manifest->state == "complete" && !holds(kChecksumsFile) && !check_files(directory, list))
+  if (says_files && manifest->state == "complete" && !holds(kChecksumsFile) &&
+      !check_files(directory, kFilesOfRun, {}, list))
     return;
   if (!says_files)
     CheckList::note(

@@ -5,25 +5,9 @@
 #include <limits>
 #include <stdexcept>
 
-namespace cleave {
+#include "harness/base/csv_text.h"
 
-std::vector<std::string> split_csv_line(const std::string& line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const bool doubled = quoted && line[i] == '"' && i + 1 < line.size() && line[i + 1] == '"';
-    if (doubled) {
-      cells.back() += line[++i];
-    } else if (line[i] == '"') {
-      quoted = !quoted;
-    } else if (line[i] == ',' && !quoted) {
-      cells.emplace_back();
-    } else {
-      cells.back() += line[i];
-    }
-  }
-  return cells;
-}
+namespace cleave {
 
 void check_cell_count(const std::string& place, std::size_t cells, std::size_t columns) {
   if (cells != columns)

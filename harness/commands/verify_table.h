@@ -33,9 +33,6 @@ class StepsTable {
   std::vector<std::vector<std::string>> rows_;
 };
 
-// The cells of one line without its end, unquoted.
-std::vector<std::string> split_csv_line(const std::string& line);
-
 // place: what an error begins with, "FILE: line 7". Throw std::invalid_argument: another number of cells than `columns`; a
 // cell that is not wholly a number ("nan" is one).
 void check_cell_count(const std::string& place, std::size_t cells, std::size_t columns);

@@ -7,6 +7,7 @@
 #include <set>
 #include <string_view>
 
+#include "harness/base/csv_text.h"
 #include "harness/base/numbers.h"
 #include "harness/experiment/algorithms.h"
 
@@ -52,13 +53,6 @@ constexpr const char* type_of(int) { return "integer"; }
 constexpr const char* type_of(std::uint64_t) { return "integer"; }
 
 }  // namespace
-
-std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + '"';
-}
 
 std::span<const ParameterColumn> parameter_columns() {
   static const std::vector<ParameterColumn> columns = [] {

@@ -312,9 +312,6 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit("body_order", r.body_order, "numbers by which bodies are split, as given", About::partition);
 }
 
-// A text as a cell: commas, quotes and line ends quoted as RFC 4180 has it.
-std::string csv_cell(const std::string& text);
-
 // "run_id,scene,...\n"
 std::string csv_header();
 

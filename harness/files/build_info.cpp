@@ -1,7 +1,9 @@
 #include "harness/files/build_info.h"
 
 #include <camd.h>
+#include <elf.h>
 #include <hdf5.h>
+#include <link.h>
 #include <metis.h>
 #include <omp.h>
 #include <stdlib.h>
@@ -20,6 +22,7 @@
 #include <scotch.h>  // needs cstdint and cstdio
 #endif
 
+#include "harness/base/hash.h"
 #include "harness/files/dense_speed.h"
 #include "harness/files/hdf5_types.h"
 #include "solver/dispatch_cost.h"
@@ -78,11 +81,54 @@ std::string compiler() {
 #endif
 }
 
+// The bytes of the note that holds the fingerprint, in one segment of notes; empty where it is not there.
+std::string build_id_in(const char* notes, std::size_t size) {
+  const auto padded = [](std::size_t bytes) { return (bytes + 3) / 4 * 4; };
+  for (std::size_t place = 0; place + sizeof(ElfW(Nhdr)) <= size;) {
+    const auto* note = reinterpret_cast<const ElfW(Nhdr)*>(notes + place);
+    const std::size_t name = place + sizeof *note, bytes = name + padded(note->n_namesz);
+    if (note->n_type == NT_GNU_BUILD_ID && std::string(notes + name) == "GNU")
+      return {notes + bytes, note->n_descsz};
+    place = bytes + padded(note->n_descsz);
+  }
+  return {};
+}
+
+// Of the first object that is loaded, which is the program.
+int take_build_id(dl_phdr_info* object, std::size_t, void* into) {
+  for (int k = 0; k < object->dlpi_phnum; ++k) {
+    const ElfW(Phdr)& segment = object->dlpi_phdr[k];
+    if (segment.p_type != PT_NOTE) continue;
+    const std::string id =
+        build_id_in(reinterpret_cast<const char*>(object->dlpi_addr + segment.p_vaddr), segment.p_memsz);
+    if (!id.empty()) *static_cast<std::string*>(into) = id;
+  }
+  return 1;
+}
+
+std::string program_build_id() {
+  std::string bytes, digits;
+  ::dl_iterate_phdr(take_build_id, &bytes);
+  for (const unsigned char byte : bytes) {
+    char pair[3];
+    digits.append(pair, std::snprintf(pair, sizeof pair, "%02x", byte));
+  }
+  return digits.empty() ? "unknown" : digits;
+}
+
 }  // namespace
 
 BuildInfo build_info() {
-  return {CLEAVE_VERSION, CLEAVE_GIT_HASH,      CLEAVE_GIT_DIRTY,
-          compiler(),     CLEAVE_COMPILE_FLAGS, CLEAVE_BUILD_TYPE};
+  return {CLEAVE_VERSION,       CLEAVE_GIT_HASH,   CLEAVE_GIT_DIRTY,  compiler(),
+          CLEAVE_COMPILE_FLAGS, CLEAVE_BUILD_TYPE, program_build_id()};
+}
+
+std::string build_key(const BuildInfo& build) {
+  Fnv1a64 hash;
+  for (const std::string& part : {build.git_hash, build.git_dirty, build.flags, build.build_type})
+    hash.add(part + "\n");
+  if (build.git_dirty != "false") hash.add(build.build_id);
+  return hex(hash.value());
 }
 
 std::string version_text(const BuildInfo& build) {

@@ -66,9 +66,11 @@ std::string sha256_of(const fs::path& path) {
 
 void write_checksums(const fs::path& directory, const std::vector<std::string>& names) {
   std::string lines;
-  for (const std::string& name : names)
-    if (name != kChecksumsFile && fs::exists(directory / name))
-      lines += sha256_of(directory / name) + "  " + name + "\n";
+  for (const std::string& name : names) {
+    if (name == kChecksumsFile || !fs::exists(directory / name)) continue;
+    sync_file(directory / name);  // or a directory that looks finished may not be, after the power fails
+    lines += sha256_of(directory / name) + "  " + name + "\n";
+  }
   write_whole_file(directory / kChecksumsFile, lines);
 }
 

@@ -62,6 +62,7 @@ void add_build(JsonWriter& json, const std::vector<std::pair<std::string, std::s
   json.field("compiler", build.compiler);
   json.field("flags", build.flags);
   json.field("build_type", build.build_type);
+  json.field("build_id", build.build_id);
   json.begin_object("libraries");
   for (const auto& [name, version] : more_libraries) json.field(name, version);
   for (const auto& [name, version] : library_versions()) json.field(name, version);

@@ -120,7 +120,11 @@ StoredManifest read_manifest(const std::filesystem::path& path) {
     stored.steps_schema = manifest.value("steps_schema", "");
     const json nothing = json::object();
     stored.utc_start = manifest.value("utc_start", "");
-    stored.git_hash = manifest.value("build", nothing).value("git_hash", "");
+    const json build = manifest.value("build", nothing);
+    stored.git_hash = build.value("git_hash", "");
+    stored.build = {build.value("version", ""),  stored.git_hash,          build.value("git_dirty", ""),
+                    build.value("compiler", ""), build.value("flags", ""), build.value("build_type", ""),
+                    build.value("build_id", "")};
     stored.cpu_model = manifest.value("machine", nothing).value("cpu_model", "");
     const json algorithms = manifest.value("algorithms", nothing), result = manifest.value("result", nothing);
     for (const json& algorithm : algorithms) stored.algorithms.push_back(read_algorithm(algorithm));

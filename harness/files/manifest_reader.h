@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "harness/base/option_value.h"
+#include "harness/files/build_info.h"
 
 namespace cleave {
 
@@ -21,7 +22,8 @@ std::map<std::string, std::string> read_manifest_options(const std::filesystem::
 struct StoredManifest {
   std::string state, command, run_id;
   std::string git_hash, cpu_model, utc_start;  // empty: of a program that did not say
-  std::string steps_schema;          // empty: of a program that did not say
+  BuildInfo build;                             // the same
+  std::string steps_schema;                    // empty: of a program that did not say
   std::vector<OptionValue> options;  // name, kind and text, in their order; what is null has an empty text
   std::vector<NamedAlgorithm> algorithms;
   std::map<std::string, double> result;  // NaN where null

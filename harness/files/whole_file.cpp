@@ -90,6 +90,11 @@ void write_whole_files(std::span<const NamedBytes> files) {
   for (const NamedBytes& named : files) publish_part_file(named.path);
 }
 
+void sync_file(const fs::path& path) {
+  if (const Descriptor file(path, O_RDONLY); !file.is_open() || !file.sync())
+    throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));
+}
+
 bool replace_in_place(const fs::path& path, std::string_view from, std::string_view to) {
   assert(from.size() == to.size());
   const Descriptor file(path, O_RDWR);

@@ -23,6 +23,9 @@ std::filesystem::path part_name_of(const std::filesystem::path& path);
 // For a writer that fills the file aside by itself: syncs it and gives it its name.
 void publish_part_file(const std::filesystem::path& path);
 
+// A file that was written otherwise: on the disk when this returns.
+void sync_file(const std::filesystem::path& path);
+
 // Where the disk is full: puts `to` in the place of the first `from` of a file, of the same length, in bytes that
 // the file has already. False where it cannot.
 bool replace_in_place(const std::filesystem::path& path, std::string_view from, std::string_view to);

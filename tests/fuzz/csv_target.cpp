@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "harness/base/csv_text.h"
 #include "harness/base/numbers.h"
 #include "harness/commands/verify_table.h"
 #include "tests/fuzz/scratch_file.h"

@@ -27,6 +27,7 @@ target_link_libraries(sanitised_tests PRIVATE cleave_solver OpenMP::OpenMP_CXX G
 add_test(NAME planted_faults COMMAND sanitised_tests)
 add_test(NAME scenes COMMAND ${CMAKE_COMMAND} -E env CLEAVE_BINARY_DIR=${CMAKE_BINARY_DIR} ${Python3_EXECUTABLE} ${CMAKE_CURRENT_LIST_DIR}/scenes_test.py -v)
 set_tests_properties(planted_faults scenes PROPERTIES TIMEOUT 1800 ${TEST_PROPERTIES})
+set_tests_properties(scenes PROPERTIES COST 1000)  # the longest, so it begins first
 
 set(LEFT_OUT ${CMAKE_CURRENT_LIST_DIR}/left_out.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${LEFT_OUT})

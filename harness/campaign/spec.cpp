@@ -1,0 +1,209 @@
+#include "harness/campaign/spec.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+
+#include "harness/base/names.h"
+#include "harness/campaign/spec_grid.h"
+#include "harness/experiment/options.h"
+#include "scenarios/scene.h"
+
+namespace cleave {
+namespace {
+
+using scene_file::reject_at;
+using Options = std::map<std::string, std::string>;
+
+constexpr int kMostRounds = 1000;
+const std::vector<std::string> kRules = {"include", "exclude", "rounds"};
+
+// Those of `run` that a cell may choose: where it goes is the campaign's business.
+std::vector<std::string> option_names() {
+  std::set<std::string> names;
+  for (const OptionSpec& spec : run_option_specs())
+    if (spec.commands.run && spec.name != "out" && spec.name != "force") names.insert(spec.name);
+  for (const auto& row : common_parameters()) names.insert(row.parameter.name);
+  for (const SceneEntry& scene : scenes())
+    for (const Parameter& parameter : scene.parameters)
+      if (parameter.kind != Parameter::Kind::path) names.insert(parameter.name);
+  return {names.begin(), names.end()};
+}
+
+bool is_flag(const std::string& name) {
+  if (const OptionSpec* spec = find_option(name)) return spec->kind == OptionKind::flag;
+  const CommonParameter* common = find_common_parameter(name);
+  return common != nullptr && common->parameter.kind == Parameter::Kind::flag;
+}
+
+// The options of a cell read as `run` reads them.
+CampaignCell checked_cell(const Options& options) {
+  CampaignCell cell;
+  cell.options = options;
+  Options given = options;
+  given["out"] = "-";  // is required, and the campaign's
+  const std::vector<OptionValue> values = option_values(parse_run_options(given));
+  cell.run_id = run_id(values);
+  for (const OptionValue& value : values)
+    if (!value.in_run_id && value.name != "out" && value.name != "force")
+      cell.beside_run_id[value.name] = value.text;
+  return cell;
+}
+
+class Expansion {
+ public:
+  explicit Expansion(const std::string& file) : file_(file), known_(option_names()) {}
+
+  std::vector<CampaignCell> cells(const toml::table& spec) {
+    const Grid grid = read_grid(spec, file_, known_, kRules);
+    for (const toml::node* rule : rules(spec, "include"))
+      check_size(read_grid(*rule->as_table(), file_, known_), *rule);
+    check_size(grid, spec);
+    const bool has_cells = find_dimension(grid, "scene") != nullptr;
+    std::vector<Options> found = has_cells ? product(grid) : std::vector<Options>();
+    for (const toml::node* rule : rules(spec, "exclude")) exclude(*rule->as_table(), grid, found);
+    for (const Options& options : found) add(options, grid, spec);
+    for (const toml::node* rule : rules(spec, "include")) include(*rule->as_table(), grid);
+    if (cells_.empty())
+      throw std::invalid_argument(
+          file_ + ": has no cell" +
+          (has_cells ? "" : "; the key scene is required, here or in an [[include]]"));
+    return in_rounds(spec);
+  }
+
+ private:
+  std::vector<const toml::node*> rules(const toml::table& spec, const std::string& key) const {
+    std::vector<const toml::node*> found;
+    const toml::node* node = spec.get(key);
+    if (node == nullptr) return found;
+    if (!node->is_array_of_tables())
+      reject_at(file_, node->source(), key, "is not a list of tables: [[" + key + "]]");
+    for (const toml::node& rule : *node->as_array()) found.push_back(&rule);
+    return found;
+  }
+
+  void check_size(const Grid& grid, const toml::node& node) const {
+    if (product_size(grid) > kMostCells)
+      reject_at(file_, grid.empty() ? node.source() : grid.back().source,
+                grid.empty() ? "cells" : grid.back().key,
+                "makes more than " + std::to_string(kMostCells) + " cells");
+  }
+
+  void exclude(const toml::table& rule, const Grid& grid, std::vector<Options>& found) const {
+    const Grid unwanted = read_grid(rule, file_, known_);
+    if (unwanted.empty())
+      reject_at(file_, rule.source(), "exclude", "has no key and would remove every cell");
+    for (const Dimension& dimension : unwanted)
+      if (find_dimension(grid, dimension.key) == nullptr)
+        reject_at(file_, dimension.source, dimension.key,
+                  "is no key of the cells, so that nothing is excluded by it");
+    const auto is_unwanted = [&](const Options& options) {
+      return std::ranges::all_of(unwanted, [&](const Dimension& dimension) {
+        return std::ranges::count(dimension.values, options.at(dimension.key)) > 0;
+      });
+    };
+    if (std::erase_if(found, is_unwanted) == 0) reject_at(file_, rule.source(), "exclude", "removes no cell");
+  }
+
+  void include(const toml::table& rule, const Grid& grid) {
+    Grid own = read_grid(rule, file_, known_);
+    if (own.empty()) reject_at(file_, rule.source(), "include", "has no key");
+    const bool takes_lists = find_dimension(grid, "scene") == nullptr;
+    for (const Dimension& dimension : grid)
+      if ((takes_lists || dimension.values.size() == 1) && find_dimension(own, dimension.key) == nullptr)
+        own.push_back(dimension);
+    check_size(own, rule);
+    const std::size_t before = cells_.size();
+    for (const Options& options : product(own)) add(options, own, rule);
+    if (cells_.size() == before)
+      reject_at(file_, rule.source(), "include", "adds no cell that is not there already");
+  }
+
+  // Series of cells may share some, which run once; but a dimension that makes the same cell twice is none.
+  void add(Options options, const Grid& grid, const toml::table& table) {
+    std::erase_if(options,
+                  [](const auto& option) { return option.second == "false" && is_flag(option.first); });
+    const std::string place = "cell " + std::to_string(cells_.size() + 1);
+    CampaignCell cell;
+    try {
+      cell = checked_cell(options);
+    } catch (const std::invalid_argument& error) {
+      reject_cell(error.what(), grid, table, place);
+    }
+    const auto [maker, is_new] = makers_.emplace(cell.name(), Maker{&table, cell.beside_run_id});
+    if (!is_new && (maker->second.table == &table || maker->second.beside_run_id != cell.beside_run_id))
+      reject_at(file_, table.source(), place,
+                "is there already: another cell has the same run id " + cell.run_id + " and threads");
+    if (!is_new) return;
+    if (cells_.size() == kMostCells)
+      reject_at(file_, table.source(), place,
+                "is one more than the " + std::to_string(kMostCells) + " that are allowed");
+    cells_.push_back(std::move(cell));
+  }
+
+  // At the key that the error of `run` names, where the spec has it.
+  [[noreturn]] void reject_cell(const std::string& text, const Grid& grid, const toml::table& table,
+                                const std::string& place) const {
+    for (const Dimension& dimension : grid) {
+      const std::string option = "--" + dimension.key + ": ";
+      if (text.starts_with(option))
+        reject_at(file_, dimension.source, dimension.key, text.substr(option.size()));
+    }
+    reject_at(file_, table.source(), place, text);
+  }
+
+  std::vector<CampaignCell> in_rounds(const toml::table& spec) const {
+    int rounds = 1;
+    if (const toml::node* node = spec.get("rounds"))
+      rounds = scene_file::Value(*node, "rounds", file_).integer({1, kMostRounds});
+    if (static_cast<double>(rounds) * static_cast<double>(cells_.size()) > kMostCells)
+      reject_at(file_, spec.get("rounds")->source(), "rounds",
+                "make more than " + std::to_string(kMostCells) + " cells");
+    std::vector<CampaignCell> all;
+    for (int round = 1; round <= rounds; ++round)
+      for (const CampaignCell& cell : cells_) all.emplace_back(cell).round = round;
+    return all;
+  }
+
+  struct Maker {
+    const toml::table* table;
+    std::map<std::string, std::string> beside_run_id;
+  };
+
+  const std::string& file_;
+  std::vector<std::string> known_;
+  std::vector<CampaignCell> cells_;
+  std::map<std::string, Maker> makers_;  // by the name of the cell, who made it
+};
+
+}  // namespace
+
+std::string CampaignCell::name() const {
+  return run_id + "_t" + beside_run_id.at("threads") + "_r" + std::to_string(round);
+}
+
+std::vector<std::string> CampaignCell::arguments() const {
+  std::vector<std::string> words;
+  for (const auto& [name, value] : options)
+    words.push_back(is_flag(name) ? "--" + name : "--" + name + "=" + value);
+  return words;
+}
+
+std::vector<CampaignCell> parse_campaign(const std::string& text, const std::string& file) {
+  return Expansion(file).cells(scene_file::parsed_toml(text, file));
+}
+
+std::string read_spec(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  std::error_code none;
+  if (!file || std::filesystem::is_directory(path, none))
+    throw std::invalid_argument("SPEC: '" + path + "' cannot be read");
+  text << file.rdbuf();
+  return text.str();
+}
+
+}  // namespace cleave

@@ -1,0 +1,163 @@
+#include "harness/commands/verify_campaign.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <stdexcept>
+
+#include "harness/base/names.h"
+#include "harness/base/numbers.h"
+#include "harness/campaign/cell_result.h"
+#include "harness/campaign/spec.h"
+#include "harness/commands/verify_directory.h"
+#include "harness/files/checksums.h"
+#include "harness/files/directory_lock.h"
+#include "harness/files/manifest.h"
+
+namespace cleave {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Rows = std::map<std::string, std::vector<IndexRow>>;  // by cell
+
+// Which share of how many a directory holds, by its name; all of it otherwise.
+std::pair<int, int> share_of(const fs::path& out, const fs::path& share) {
+  int shard = 1, shards = 1;
+  if (share != out) std::sscanf(share.filename().c_str(), "%dof%d", &shard, &shards);
+  return {shard, std::max(1, shards)};
+}
+
+// The index has the cells of its spec, numbered as that has them.
+void check_spec(const fs::path& out, const fs::path& share, const std::vector<IndexRow>& rows,
+                CheckList& list) {
+  std::string wrong;
+  try {
+    const fs::path path = share / kSpecFile;
+    const std::vector<CampaignCell> cells = parse_campaign(read_spec(path.string()), path.string());
+    const auto [shard, shards] = share_of(out, share);
+    std::vector<IndexRow> expected;
+    for (int k = shard - 1; k < static_cast<int>(cells.size()); k += shards)
+      expected.push_back(pending_row(cells[static_cast<std::size_t>(k)], k + 1));
+    const auto is_of_spec = [](const IndexRow& row) { return row.number > 0; };
+    if (std::ranges::count_if(rows, is_of_spec) != std::ssize(expected))
+      wrong = "; it has another number of cells";
+    for (std::size_t k = 0; k < expected.size() && wrong.empty(); ++k)
+      if (rows[k].cell != expected[k].cell || rows[k].number != expected[k].number ||
+          rows[k].run_id != expected[k].run_id || rows[k].round != expected[k].round ||
+          rows[k].arguments != expected[k].arguments)
+        wrong = "; line " + std::to_string(k + 2) + " is not cell " + std::to_string(expected[k].number) +
+                " of it";
+  } catch (const std::invalid_argument& error) {
+    wrong = std::string("; ") + error.what();
+  }
+  list.add(wrong.empty(), (share / kIndexFile).string(), "has the cells of spec.toml" + wrong);
+}
+
+void read_share(const fs::path& out, const fs::path& share, Rows& rows, CheckList& list) {
+  const std::vector<std::string> folders =
+      share == out ? std::vector<std::string>{kCellsFolder, kFailedFolder, kShardsFolder}
+                   : std::vector<std::string>{};
+  if (!check_files(share, {kIndexFile, kSpecFile}, folders, list)) return;
+  std::vector<IndexRow> found;
+  std::string error;
+  try {
+    found = read_index(share / kIndexFile);
+  } catch (const std::invalid_argument& wrong) {
+    error = std::string("; ") + wrong.what();
+  }
+  list.add(error.empty(), (share / kIndexFile).string(), "readable" + error);
+  if (!error.empty()) return;
+  check_spec(out, share, found, list);
+  for (const IndexRow& row : found) rows[row.cell].push_back(row);
+}
+
+// What the index says is what the directory of the cell says.
+void check_row(const fs::path& out, const IndexRow& row, CheckList& list) {
+  const fs::path directory = out / kCellsFolder / row.cell;
+  std::string wrong;
+  try {
+    const StoredManifest manifest = read_manifest(directory / kManifestFile);
+    IndexRow found = row;
+    found.run_id = manifest.run_id;
+    take_result(directory, manifest, found);
+    found.cell = found.run_id + "_t" + manifest.option("threads") + "_r" + std::to_string(row.round);
+    const std::string stored = index_text({row}), expected = index_text({found});
+    if (stored != expected) wrong = "; its directory gives " + expected.substr(expected.find('\n') + 1);
+    if (wrong.ends_with("\n")) wrong.pop_back();
+  } catch (const std::exception& error) {
+    wrong = std::string("; ") + error.what();
+  }
+  list.add(wrong.empty(), directory.string(), "is as the index says" + wrong);
+}
+
+// Of the rows of a cell in several indexes, the one that its directory stands for.
+void check_cell(const fs::path& out, const std::string& cell, const std::vector<IndexRow>& rows,
+                CheckList& list) {
+  const fs::path directory = out / kCellsFolder / cell;
+  if (std::ranges::all_of(rows, &IndexRow::is_pending))
+    return list.add(false, directory.string(), "pending: the campaign is incomplete");
+  const auto row = std::ranges::find_if(rows, [&](const IndexRow& one) { return still_stands(out, one); });
+  if (row == rows.end())
+    return list.add(false, directory.string(),
+                    "its checksums, or its log in failed/, are not those of the index");
+  if (row->log == "-") {
+    verify_directory(directory, list);
+    check_row(out, *row, list);
+  } else if (row->checksums != "-") {
+    check_files(directory, {}, {}, list);
+  }
+}
+
+// What no index knows.
+void check_names(const fs::path& folder, const std::string& ending, const Rows& rows, CheckList& list) {
+  std::error_code none;
+  if (!fs::is_directory(folder, none)) return;
+  std::string others;
+  for (const std::string& name : names_in(folder)) {
+    const bool ends = name.ends_with(ending);
+    const auto found = rows.find(ends ? name.substr(0, name.size() - ending.size()) : "");
+    const bool has_log = found != rows.end() && std::ranges::any_of(found->second, [](const IndexRow& row) {
+                           return row.log != "-";
+                         });
+    if (found == rows.end() || (!ending.empty() && !has_log)) others += "; " + name + " is in no index";
+  }
+  list.add(others.empty(), folder.string(), "holds what the index names" + others);
+}
+
+void check_shares(const fs::path& out, const std::vector<fs::path>& shares, CheckList& list) {
+  std::string others;
+  if (fs::is_directory(out / kShardsFolder))
+    for (const std::string& name : names_in(out / kShardsFolder))
+      if (std::ranges::count(shares, out / kShardsFolder / name) == 0)
+        others += "; " + name + " has no index";
+  if (!fs::exists(out / kIndexFile))
+    for (const std::string& name : names_in(out))
+      if (name != kShardsFolder && name != kCellsFolder && name != kFailedFolder)
+        others += "; " + name + " is not of this campaign";
+  list.add(others.empty(), out.string(), "holds a campaign and nothing else" + others);
+}
+
+}  // namespace
+
+bool is_campaign(const fs::path& directory) {
+  return fs::exists(directory / kIndexFile) || fs::is_directory(directory / kShardsFolder) ||
+         (fs::is_directory(directory / kCellsFolder) && fs::exists(directory / kSpecFile));
+}
+
+void verify_campaign(const fs::path& directory, CheckList& list) {
+  const std::vector<fs::path> shares = share_directories(directory);
+  check_shares(directory, shares, list);
+  if (shares.empty()) return list.add(false, (directory / kIndexFile).string(), "is missing");
+  Rows rows;
+  const int before = list.failures();
+  for (const fs::path& share : shares) read_share(directory, share, rows, list);
+  if (list.failures() > before)
+    return CheckList::note(directory.string(),
+                           "its index is not the one that was written; its cells were not looked at");
+  for (const auto& [cell, of_cell] : rows) check_cell(directory, cell, of_cell, list);
+  check_names(directory / kCellsFolder, "", rows, list);
+  check_names(directory / kFailedFolder, ".log", rows, list);
+}
+
+}  // namespace cleave
