@@ -10,7 +10,7 @@
 #include <array>
 #include <vector>
 
-#include "partition/dice.h"
+#include "harness/base/dice.h"
 #include "partition/level_graph.h"
 
 namespace cleave {

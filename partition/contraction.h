@@ -14,8 +14,8 @@
 #include <span>
 #include <vector>
 
+#include "harness/base/dice.h"
 #include "partition/body_graph.h"
-#include "partition/dice.h"
 
 namespace cleave {
 

@@ -18,8 +18,8 @@
 #include <memory>
 #include <numeric>
 
+#include "harness/base/dice.h"
 #include "partition/bisection.h"
-#include "partition/dice.h"
 #include "partition/gains.h"
 #include "partition/parameters.h"
 #include "partition/registry.h"

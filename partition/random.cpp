@@ -1,5 +1,5 @@
 // random: bodies dealt at random, as a control that every partitioner must beat. The bodies are shuffled
-// (dice.h) and dealt in turn to
+// (harness/base/dice.h) and dealt in turn to
 //
 //     k = ceil(n / max-bodies)
 //
@@ -7,8 +7,8 @@
 #include <memory>
 #include <vector>
 
+#include "harness/base/dice.h"
 #include "harness/base/parameter.h"
-#include "partition/dice.h"
 #include "partition/partitioner.h"
 
 namespace cleave {

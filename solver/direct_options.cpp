@@ -52,13 +52,46 @@ const Parameter& sweeps() {
   return parameter;
 }
 
-const Parameter& lemke_max_rows() {
-  static const Parameter parameter{.name = "lemke-max-rows",
-                                   .kind = Kind::integer,
-                                   .default_value = "500",
+const Parameter& until() {
+  static const Parameter parameter{.name = "until",
+                                   .kind = Kind::number,
+                                   .default_value = "0",
                                    .range = {0, kInfinity},
-                                   .help = "rows above which lemke refuses a step: its time grows with their cube",
-                                   .source = "solver/baselines/lemke.cpp"};
+                                   .unit = "m/s",
+                                   .help =
+                                       "residual, over max(1, largest |v0|), at which an iterative baseline "
+                                       "ends before its last sweep; 0: never",
+                                   .source = "solver/baselines/iterative_baseline.h"};
+  return parameter;
+}
+
+const Parameter& order() {
+  static const Parameter parameter{.name = "order",
+                                   .kind = Kind::word,
+                                   .default_value = "natural",
+                                   .words = {"natural", "random", "height", "propagation"},
+                                   .help = "order in which pgs visits constraints",
+                                   .source = "solver/baselines/constraint_order.h"};
+  return parameter;
+}
+
+const Parameter& order_seed() {
+  static const Parameter parameter{.name = "order-seed",
+                                   .kind = Kind::integer,
+                                   .default_value = "1",
+                                   .range = {0, kInfinity},
+                                   .help = "seed of the dice of order=random"};
+  return parameter;
+}
+
+const Parameter& lemke_max_rows() {
+  static const Parameter parameter{
+      .name = "lemke-max-rows",
+      .kind = Kind::integer,
+      .default_value = "500",
+      .range = {0, kInfinity},
+      .help = "rows above which lemke refuses a step: its time grows with their cube",
+      .source = "solver/baselines/lemke.cpp"};
   return parameter;
 }
 

@@ -22,6 +22,9 @@ const Parameter& max_iterations();
 const Parameter& predictor_sweeps();
 const Parameter& reuse_analysis();
 const Parameter& sweeps();
+const Parameter& until();
+const Parameter& order();
+const Parameter& order_seed();
 const Parameter& lemke_max_rows();
 const Parameter& arity();
 

@@ -3,9 +3,9 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "harness/base/dice.h"
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
-#include "partition/dice.h"
 #include "partition/partitioner.h"
 
 namespace cleave {

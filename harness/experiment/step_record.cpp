@@ -33,6 +33,7 @@ constexpr std::string_view kLate[] = {"partition_seed",  "trials",      "karger_
 
 // Behind them came other columns too.
 constexpr std::string_view kNewest = "restart";
+constexpr std::string_view kBehindBodyOrder[] = {"until", "order", "order_seed"};
 
 // 0 for all that are not late.
 std::ptrdiff_t late_rank(const std::string& column) {
@@ -44,6 +45,7 @@ ParameterColumn::Place place_of(const std::string& column) {
   static const std::set<std::string> first = {"max_bodies", "tau_mr", "tau_mix", "max_growth"};
   if (first.contains(column)) return ParameterColumn::Place::first;
   if (column == kNewest) return ParameterColumn::Place::newest;
+  if (std::ranges::count(kBehindBodyOrder, column) > 0) return ParameterColumn::Place::behind_body_order;
   return late_rank(column) > 0 ? ParameterColumn::Place::last : ParameterColumn::Place::among_options;
 }
 

@@ -38,7 +38,7 @@ inline constexpr const char* kStepsSchema = "cleave-steps-5";
 // A column of a parameter of algorithms (algorithms.h). Those of the first tables stand first; some came when
 // there were others behind them, and stand last.
 struct ParameterColumn {
-  enum class Place { first, among_options, last, newest };
+  enum class Place { first, among_options, last, newest, behind_body_order };
 
   std::string name, help;
   About about;
@@ -310,6 +310,7 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         "share of the same friction rows whose |impulse| is above mu n (1 + 1e-9)");
   visit_parameters(ParameterColumn::Place::newest);
   visit("body_order", r.body_order, "numbers by which bodies are split, as given", About::partition);
+  visit_parameters(ParameterColumn::Place::behind_body_order);
 }
 
 // "run_id,scene,...\n"

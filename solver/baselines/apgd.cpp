@@ -12,7 +12,7 @@
 //     where w_y^T (lambda_k+1 - lambda_k) > 0: y_k+1 = lambda_k+1, theta_k+1 = 1;    then L <- 0.9 L
 //
 // and the iterate of the least residual is the result. It ends after `sweeps` iterations, or where the residual is at most
-// the solver's target. An iteration costs one product with J and one with M^-1 J^T, and both again for every doubling.
+// the solver's target or `until`. An iteration costs one product with J and one with M^-1 J^T, and both again for every doubling.
 //
 // Source: Mazhar, Heyn, Negrut and Tasora, Using Nesterov's method to accelerate multibody dynamics with friction and
 // contact, ACM Transactions on Graphics 34(3), 2015, algorithm 1, on the sequence of Nesterov 1983 with the restart of
@@ -35,8 +35,10 @@ struct Point {
 
 class Apgd : public IterativeBaseline {
  public:
-  Apgd(const SolveOptions& options, int sweeps)
-      : IterativeBaseline("apgd", options), sweeps_(sweeps), target_m_per_s_(options.target_m_per_s) {}
+  Apgd(const SolveOptions& options, const Settings& settings)
+      : IterativeBaseline("apgd", options),
+        sweeps_(settings.integer("sweeps")),
+        target_m_per_s_(std::max(options.target_m_per_s, settings.number("until"))) {}
 
  private:
   int iterate(const PreparedStep& step, Solution& solution) override;
@@ -214,7 +216,7 @@ double Apgd::sum(const PreparedStep& step, const Value& value_of) {
 }  // namespace
 
 std::unique_ptr<StepSolver> make_apgd(const SolveOptions& options, const Settings& settings) {
-  return std::make_unique<Apgd>(options, settings.integer("sweeps"));
+  return std::make_unique<Apgd>(options, settings);
 }
 
 }  // namespace cleave

@@ -9,6 +9,7 @@
 namespace cleave {
 
 std::unique_ptr<StepSolver> make_pgs(const SolveOptions& options, const Settings& settings);
+std::unique_ptr<StepSolver> make_pgs_parts(const SolveOptions& options, const Settings& settings);
 std::unique_ptr<StepSolver> make_apgd(const SolveOptions& options, const Settings& settings);
 std::unique_ptr<StepSolver> make_jacobi_split(const SolveOptions& options, const Settings& settings);
 std::unique_ptr<StepSolver> make_split_domains(const SolveOptions& options, const Settings& settings);

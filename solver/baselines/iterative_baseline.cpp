@@ -1,5 +1,7 @@
 #include "solver/baselines/iterative_baseline.h"
 
+#include <algorithm>
+
 #include "solver/impulse_set.h"
 #include "solver/stop.h"
 
@@ -24,10 +26,8 @@ SolveSummary IterativeBaseline::do_solve(const StepProblem& problem, const Parts
     step_.velocity(solution.impulse, solution.velocity);
     summary.iterations = iterate(step_, solution);
   }
-  slack_.resize(problem.row_count());
   step_.velocity(solution.impulse, solution.velocity);
-  step_.slack(solution.velocity, solution.impulse, slack_);
-  if (!(step_.residual(solution.impulse, slack_) <= step_.exact_limit_m_per_s())) {
+  if (!(residual(step_, solution) <= step_.exact_limit_m_per_s())) {
     summary.status = SolveStatus::not_converged;
     summary.message = "residual above the limit after the last sweep";
   }
@@ -35,10 +35,21 @@ SolveSummary IterativeBaseline::do_solve(const StepProblem& problem, const Parts
   return summary;
 }
 
+double IterativeBaseline::residual(const PreparedStep& step, const Solution& solution) {
+  slack_.resize(step.row_count());
+  step.slack(solution.velocity, solution.impulse, slack_);
+  return step.residual(solution.impulse, slack_);
+}
+
 int SweepingBaseline::iterate(const PreparedStep& step, Solution& solution) {
   begin(step);
-  for (int k = 0; k < sweeps_; ++k) {
+  int next_look = until_ > 0 ? 0 : sweeps_;
+  for (int done = 0; done < sweeps_; ++done) {
     check_stop(stop());
+    if (done == next_look) {
+      if (residual(step, solution) <= until_ * step.velocity_scale()) return done;
+      next_look += std::max(1, done / 8);
+    }
     sweep(step, solution);
   }
   return sweeps_;

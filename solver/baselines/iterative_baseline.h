@@ -1,11 +1,17 @@
 // The frame of baselines that improve impulse and velocity by iterating: prepares the step on all threads, has it
 // iterated, and says not_converged where the residual they leave is above the limit.
+//
+// Both budgets of an iterative baseline end it, whichever is met first: `sweeps`, and `until`, the judge's residual over
+// max(1, largest |v0|). As a look at the residual costs about as much as a sweep, sweeping baselines look before the sweeps
+// 0, 1, 2, ... 8, 9, 10, ... 16, 18, 20, ...: the next look is an eighth of the sweeps later. So a look costs little, and at
+// most an eighth of the sweeps are made in vain.
 #pragma once
 
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "harness/base/parameter.h"
 #include "solver/parallel_tasks.h"
 #include "solver/prepared_step.h"
 #include "solver/stage_clock.h"
@@ -30,6 +36,8 @@ class IterativeBaseline : public StepSolver {
   ParallelTasks& tasks() { return tasks_; }
   // (n) of the solve, for those that use the partition.
   std::span<const int> part_of_body() const { return part_of_body_; }
+  // Of solution.impulse and solution.velocity.
+  double residual(const PreparedStep& step, const Solution& solution);
 
  private:
   // Improves solution.impulse (m), the warm start at first, and solution.velocity = v0 + M^-1 J^T impulse. Returns the
@@ -48,11 +56,14 @@ class IterativeBaseline : public StepSolver {
   std::vector<double> slack_;
 };
 
-// Those whose iterations are a fixed number of sweeps; stop is looked at before each.
+// Those whose iterations are sweeps; stop is looked at before each.
 class SweepingBaseline : public IterativeBaseline {
  public:
-  SweepingBaseline(std::string_view name, const SolveOptions& options, int sweeps)
-      : IterativeBaseline(name, options), sweeps_(sweeps) {}
+  // settings: `sweeps` and `until` at least.
+  SweepingBaseline(std::string_view name, const SolveOptions& options, const Settings& settings)
+      : IterativeBaseline(name, options),
+        sweeps_(settings.integer("sweeps")),
+        until_(settings.number("until")) {}
 
  private:
   // Once a solve, before the first sweep.
@@ -62,6 +73,7 @@ class SweepingBaseline : public IterativeBaseline {
   int iterate(const PreparedStep& step, Solution& solution) final;
 
   int sweeps_;
+  double until_;
 };
 
 }  // namespace cleave

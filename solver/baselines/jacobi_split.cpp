@@ -17,7 +17,8 @@ namespace {
 
 class JacobiSplit : public SweepingBaseline {
  public:
-  JacobiSplit(const SolveOptions& options, int sweeps) : SweepingBaseline("jacobi-split", options, sweeps) {}
+  JacobiSplit(const SolveOptions& options, const Settings& settings)
+      : SweepingBaseline("jacobi-split", options, settings) {}
 
  private:
   void begin(const PreparedStep& step) override {
@@ -36,7 +37,7 @@ class JacobiSplit : public SweepingBaseline {
 }  // namespace
 
 std::unique_ptr<StepSolver> make_jacobi_split(const SolveOptions& options, const Settings& settings) {
-  return std::make_unique<JacobiSplit>(options, settings.integer("sweeps"));
+  return std::make_unique<JacobiSplit>(options, settings);
 }
 
 }  // namespace cleave

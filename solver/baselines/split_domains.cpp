@@ -23,8 +23,8 @@ namespace {
 
 class SplitDomains : public SweepingBaseline {
  public:
-  SplitDomains(const SolveOptions& options, int sweeps)
-      : SweepingBaseline("split-domains", options, sweeps) {}
+  SplitDomains(const SolveOptions& options, const Settings& settings)
+      : SweepingBaseline("split-domains", options, settings) {}
   bool uses_partition() const override { return true; }
 
  private:
@@ -48,7 +48,7 @@ class SplitDomains : public SweepingBaseline {
 }  // namespace
 
 std::unique_ptr<StepSolver> make_split_domains(const SolveOptions& options, const Settings& settings) {
-  return std::make_unique<SplitDomains>(options, settings.integer("sweeps"));
+  return std::make_unique<SplitDomains>(options, settings);
 }
 
 }  // namespace cleave

@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-#include "partition/dice.h"
+#include "harness/base/dice.h"
 #include "partition/registry.h"
 #include "tests/partition/test_graphs.h"
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "partition/dice.h"
+#include "harness/base/dice.h"
 #include "tests/partition/brute_force.h"
 #include "tests/partition/test_graphs.h"
 

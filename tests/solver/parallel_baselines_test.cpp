@@ -1,4 +1,4 @@
-// Baselines that iterate on all threads: apgd, jacobi-split, split-domains.
+// Baselines that iterate on all threads: apgd, jacobi-split, pgs-parts, split-domains.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -92,7 +92,8 @@ TEST_P(ParallelBaselineTest, SecondSolveAllocatesNothing) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Baselines, ParallelBaselineTest,
-                         testing::Values("apgd", "jacobi-split", "split-domains"), [](const auto& info) {
+                         testing::Values("apgd", "jacobi-split", "pgs-parts", "split-domains"),
+                         [](const auto& info) {
                            std::string name = info.param;
                            std::ranges::replace(name, '-', '_');
                            return name;
