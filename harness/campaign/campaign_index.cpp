@@ -57,11 +57,7 @@ std::vector<Column> index_columns() {
   std::vector<Column> columns;
   const IndexRow row;
   visit_index(row, [&](const char* name, const auto& member, const char* help) {
-    Column column;
-    column.name = name;
-    column.help = help;
-    column.type = type_of(member);
-    columns.push_back(column);
+    columns.push_back({name, help, false, About::bookkeeping, type_of(member)});
   });
   return columns;
 }
