@@ -4,6 +4,7 @@ import os
 import pathlib
 import random
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -213,13 +214,36 @@ class LanesTest(unittest.TestCase):
 
         def interrupt(text, tally):
             if tally.total("trials") == 3 and text:
-                raise KeyboardInterrupt
+                os.kill(os.getpid(), signal.SIGINT)
 
         begin = time.monotonic()
         tally, interrupted = self.watch(make, interrupt)
         self.assertTrue(interrupted)
         self.assertEqual(tally.total("trials"), 3)
         self.assertLess(time.monotonic() - begin, 60)
+
+    def test_an_interrupt_before_the_lanes_are_watched_is_not_lost(self):
+        begin = time.monotonic()
+        lanes = Lanes(3, lambda lane, tally, tell: time.sleep(60))
+        os.kill(os.getpid(), signal.SIGINT)
+        self.assertTrue(lanes.watch(lambda *_: None))
+        self.assertLess(time.monotonic() - begin, 60)
+
+    def test_a_lane_whose_interrupt_was_dropped_ends_when_it_tells(self):
+
+        def make(lane, tally, tell):
+            tally.counts["flips"]["trials"] = 1
+            try:
+                tell("begun")
+                time.sleep(60)
+            except KeyboardInterrupt:
+                pass  # as Python does with what is raised in its hooks at a fork
+            tell("")
+            tally.counts["flips"]["trials"] = 100
+
+        tally, interrupted = self.watch(make, lambda text, _: text and os.kill(os.getpid(), signal.SIGINT))
+        self.assertTrue(interrupted)
+        self.assertLess(tally.total("trials"), 100)
 
     def test_a_lane_that_dies_is_an_error(self):
         with self.assertRaisesRegex(ResultError, "lane 1 .* exit code 7"):
