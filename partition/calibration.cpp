@@ -1,8 +1,6 @@
 #include "partition/calibration.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -10,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "harness/base/file_text.h"
 #include "harness/base/hash.h"
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
@@ -133,12 +132,11 @@ class Reader {
 };
 
 std::string whole_text(const std::string& option, const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  if (!file.is_open() || file.bad())
+  std::optional<std::string> text = file_text(path);
+  if (!text)
     throw std::invalid_argument(option + ": '" + path +
                                 "' cannot be read; allowed: shipped, or a file of cleave calibrate");
-  return text;
+  return *std::move(text);
 }
 
 bool is_fingerprint(const std::string& text) {

@@ -1,7 +1,6 @@
 #include "partition/part_file.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +8,7 @@
 #include <stdexcept>
 
 #include "harness/base/hash.h"
+#include "harness/base/numbers.h"
 
 namespace cleave {
 namespace {
@@ -17,12 +17,6 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void fail(const std::string& file, const std::string& text) {
   throw std::invalid_argument(file + ": " + text);
-}
-
-template <class Number>
-bool read_whole(const std::string& text, Number& number) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc{} && end == text.data() + text.size();
 }
 
 void add_ids(std::span<const int> part_of_body, Fnv1a64& hash) {

@@ -2,12 +2,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <mutex>
-#include <sstream>
 #include <stdexcept>
 
+#include "harness/base/file_text.h"
 #include "harness/base/hash.h"
 #include "scenarios/file_body_reader.h"
 #include "scenarios/file_joint_reader.h"
@@ -61,11 +60,11 @@ void read_all_bodies(Table& file, Description& scene) {
 }
 
 std::string text_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (!file || std::filesystem::is_directory(path) || !(text << file.rdbuf()))
-    throw std::invalid_argument("--scene file@path: '" + path + "' cannot be read, or is empty; allowed: a scene file");
-  return std::move(text).str();
+  std::optional<std::string> text = file_text(path);
+  if (!text || text->empty())
+    throw std::invalid_argument("--scene file@path: '" + path +
+                                "' cannot be read, or is empty; allowed: a scene file");
+  return *std::move(text);
 }
 
 }  // namespace

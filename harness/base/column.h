@@ -9,9 +9,9 @@ namespace cleave {
 
 struct Column {
   std::string name, help;
-  bool machine = false;  // may differ between two runs of the same experiment
-  About about = About::measured;
-  const char* type = "text";  // integer, number or text
+  bool machine;  // may differ between two runs of the same experiment
+  About about;
+  const char* type;  // integer, number or text
 };
 
 }  // namespace cleave

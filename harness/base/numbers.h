@@ -2,9 +2,11 @@
 // here.
 #pragma once
 
+#include <charconv>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace cleave {
@@ -25,6 +27,14 @@ struct Range {
 double parse_number(const std::string& option, const std::string& text, const Range& range);
 int parse_integer(const std::string& option, const std::string& text, const Range& range);
 std::uint64_t parse_seed(const std::string& option, const std::string& text);
+
+// False unless the whole text is one number that fits; "nan" and "inf" are floating-point ones.
+template <class Number>
+bool read_whole(const std::string& text, Number& value) {
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, value);
+  return error == std::errc{} && stop == end;
+}
 
 // "a,b,c" to its items.
 std::vector<std::string> split_list(const std::string& text);

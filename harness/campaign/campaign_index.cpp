@@ -1,10 +1,8 @@
 #include "harness/campaign/campaign_index.h"
 
 #include <algorithm>
-#include <charconv>
 #include <fstream>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
 
 #include "harness/base/csv_text.h"
@@ -17,10 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const char* type_of(const std::string&) { return "text"; }
-const char* type_of(int) { return "integer"; }
-const char* type_of(double) { return "number"; }
-
 std::string cell_text(const std::string& value) { return csv_cell(value); }
 std::string cell_text(int value) { return std::to_string(value); }
 std::string cell_text(double value) { return number_text(value); }
@@ -32,41 +26,34 @@ bool take(const std::string& text, std::string& value) {
 }
 template <class Number>
 bool take(const std::string& text, Number& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size();
+  return read_whole(text, value);
 }
 
 std::string header() {
   std::string line;
-  for (const Column& column : index_columns()) line += (line.empty() ? "" : ",") + column.name;
+  visit_index(IndexRow(),
+              [&](const char* name, const auto&) { line += (line.empty() ? "" : ",") + std::string(name); });
   return line;
 }
 
-bool take_row(const std::string& line, std::size_t columns, IndexRow& row) {
+bool take_row(const std::string& line, IndexRow& row) {
   const std::vector<std::string> cells = split_csv_line(line);
-  if (cells.size() != columns) return false;
   std::size_t k = 0;
   bool good = true;
-  visit_index(row, [&](const char*, auto& member, const char*) { good = take(cells[k++], member) && good; });
-  return good;
+  visit_index(row, [&](const char*, auto& member) {
+    good = k < cells.size() && take(cells[k], member) && good;
+    ++k;
+  });
+  return good && k == cells.size();
 }
 
 }  // namespace
-
-std::vector<Column> index_columns() {
-  std::vector<Column> columns;
-  const IndexRow row;
-  visit_index(row, [&](const char* name, const auto& member, const char* help) {
-    columns.push_back({name, help, false, About::bookkeeping, type_of(member)});
-  });
-  return columns;
-}
 
 std::string index_text(const std::vector<IndexRow>& rows) {
   std::string text = header() + "\n";
   for (const IndexRow& row : rows) {
     bool first = true;
-    visit_index(row, [&](const char*, const auto& member, const char*) {
+    visit_index(row, [&](const char*, const auto& member) {
       text += (first ? "" : ",") + cell_text(member);
       first = false;
     });
@@ -88,10 +75,9 @@ std::vector<IndexRow> read_index(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::string line;
   std::getline(file, line);
-  const std::size_t columns = index_columns().size();
   std::vector<IndexRow> rows;
   while (std::getline(file, line)) {
-    if (!take_row(line, columns, rows.emplace_back()) || file.eof())
+    if (!take_row(line, rows.emplace_back()) || file.eof())
       throw std::invalid_argument(path.string() + ": line " + std::to_string(rows.size() + 1) +
                                   " is no row of an index; is it damaged?");
   }

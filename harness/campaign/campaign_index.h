@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/column.h"
-
 namespace cleave {
 
 inline constexpr const char* kIndexFile = "index.csv";
@@ -22,46 +20,50 @@ inline constexpr const char* kPending =
     "pending";  // status of a cell that has not been run, or not to its end
 
 struct IndexRow {
-  std::string cell;  // the name of its directory in cells/
-  int number = 0;    // place in the spec, from 1; 0: of an earlier spec
-  std::string run_id;
-  int round = 1;
-  std::string status = kPending;
-  std::string reason = "-";
-  int rows = 0, rows_ok = 0;
-  double run_s = 0, process_s = 0;
-  std::string machine = "-", git_hash = "-", build = "-", utc_start = "-";
-  std::string checksums = "-", log = "-";
-  std::string arguments;
+  std::string cell;    // name of the cell: its directory in cells/, its log in failed/
+  int number = 0;      // place in the spec, from 1; 0 where the spec as it is now has no such cell
+  std::string run_id;  // fingerprint of all options but those that change no row
+  int round = 1;       // which of the rounds
+  std::string status =
+      kPending;  // pending, ok, the status of its first row that is not ok, or how its process ended
+  std::string reason = "-";  // why it is not ok
+  int rows = 0;              // rows of its steps.csv
+  int rows_ok = 0;           // those with status ok
+  double run_s = 0;          // s, that the run itself counts
+  double process_s =
+      0;  // s, from start to end of its process; nan where the campaign was killed before it wrote that down
+  std::string machine = "-";    // processor it ran on
+  std::string git_hash = "-";   // commit of the program
+  std::string build = "-";      // fingerprint of commit, flags and build type, of local changes too
+  std::string utc_start = "-";  // when it began
+  std::string checksums = "-";  // SHA-256 of the file checksums in its directory; - where there is none
+  std::string log = "-";        // SHA-256 of its log in failed/; - where there is none
+  std::string arguments;        // of cleave run
 
   bool is_pending() const { return status == kPending; }
 };
 
-// The one list of columns, in order: visit(name, member, help).
+// The one list of columns, in order: visit(name, member).
 template <class Row, class Visit>
-void visit_index(Row& row, Visit&& visit) {
-  visit("cell", row.cell, "name of the cell: its directory in cells/, its log in failed/");
-  visit("number", row.number, "place in the spec, from 1; 0 where the spec as it is now has no such cell");
-  visit("run_id", row.run_id, "fingerprint of all options but those that change no row");
-  visit("round", row.round, "which of the rounds");
-  visit("status", row.status,
-        "pending, ok, the status of its first row that is not ok, or how its process ended");
-  visit("reason", row.reason, "why it is not ok");
-  visit("rows", row.rows, "rows of its steps.csv");
-  visit("rows_ok", row.rows_ok, "those with status ok");
-  visit("run_s", row.run_s, "s, that the run itself counts");
-  visit("process_s", row.process_s,
-        "s, from start to end of its process; nan where the campaign was killed before it wrote that down");
-  visit("machine", row.machine, "processor it ran on");
-  visit("git_hash", row.git_hash, "commit of the program");
-  visit("build", row.build, "fingerprint of commit, flags and build type, of local changes too");
-  visit("utc_start", row.utc_start, "when it began");
-  visit("checksums", row.checksums, "SHA-256 of the file checksums in its directory; - where there is none");
-  visit("log", row.log, "SHA-256 of its log in failed/; - where there is none");
-  visit("arguments", row.arguments, "of cleave run");
+void visit_index(Row&& row, Visit&& visit) {
+  visit("cell", row.cell);
+  visit("number", row.number);
+  visit("run_id", row.run_id);
+  visit("round", row.round);
+  visit("status", row.status);
+  visit("reason", row.reason);
+  visit("rows", row.rows);
+  visit("rows_ok", row.rows_ok);
+  visit("run_s", row.run_s);
+  visit("process_s", row.process_s);
+  visit("machine", row.machine);
+  visit("git_hash", row.git_hash);
+  visit("build", row.build);
+  visit("utc_start", row.utc_start);
+  visit("checksums", row.checksums);
+  visit("log", row.log);
+  visit("arguments", row.arguments);
 }
-
-std::vector<Column> index_columns();
 
 // Header and rows.
 std::string index_text(const std::vector<IndexRow>& rows);

@@ -1,12 +1,10 @@
 #include "harness/campaign/spec.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
+#include "harness/base/file_text.h"
 #include "harness/base/names.h"
 #include "harness/campaign/spec_grid.h"
 #include "harness/experiment/options.h"
@@ -197,13 +195,9 @@ std::vector<CampaignCell> parse_campaign(const std::string& text, const std::str
 }
 
 std::string read_spec(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  std::error_code none;
-  if (!file || std::filesystem::is_directory(path, none))
-    throw std::invalid_argument("SPEC: '" + path + "' cannot be read");
-  text << file.rdbuf();
-  return text.str();
+  std::optional<std::string> text = file_text(path);
+  if (!text) throw std::invalid_argument("SPEC: '" + path + "' cannot be read");
+  return *std::move(text);
 }
 
 }  // namespace cleave

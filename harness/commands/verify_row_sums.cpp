@@ -1,7 +1,6 @@
 #include "harness/commands/verify_row_sums.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -20,8 +19,7 @@ namespace {
 template <class Number>
 bool reads_as(const std::string& cell) {
   Number value{};
-  const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-  return error == std::errc{} && end == cell.data() + cell.size();
+  return read_whole(cell, value);
 }
 
 // By column: whether a cell reads as what the column holds.

@@ -1,11 +1,11 @@
 #include "harness/commands/verify_table.h"
 
-#include <charconv>
 #include <fstream>
 #include <limits>
 #include <stdexcept>
 
 #include "harness/base/csv_text.h"
+#include "harness/base/numbers.h"
 
 namespace cleave {
 
@@ -17,8 +17,7 @@ void check_cell_count(const std::string& place, std::size_t cells, std::size_t c
 
 double number_of_cell(const std::string& place, const std::string& column, const std::string& text) {
   double value = std::numeric_limits<double>::quiet_NaN();
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size())
+  if (!read_whole(text, value))
     throw std::invalid_argument(place + ": " + column + " = '" + text + "', allowed: a number");
   return value;
 }

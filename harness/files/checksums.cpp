@@ -7,11 +7,11 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <fstream>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
 
+#include "harness/base/file_text.h"
 #include "harness/files/whole_file.h"
 
 namespace cleave {
@@ -76,12 +76,10 @@ void write_checksums(const fs::path& directory, const std::vector<std::string>& 
 
 std::map<std::string, std::string> read_checksums(const fs::path& directory) {
   const fs::path path = directory / kChecksumsFile;
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream all;
-  if (!file || !(all << file.rdbuf()))
-    throw std::invalid_argument(path.string() + ": cannot be read or is empty");
+  const std::optional<std::string> all = file_text(path);
+  if (!all || all->empty()) throw std::invalid_argument(path.string() + ": cannot be read or is empty");
   std::map<std::string, std::string> sums;
-  std::istringstream lines(all.str());
+  std::istringstream lines(*all);
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     const auto reject = [&](const char* reason) {
