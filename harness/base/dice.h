@@ -3,6 +3,7 @@
 // implementations.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <random>
@@ -28,11 +29,17 @@ class Dice {
   std::mt19937_64 engine_;
 };
 
-// 0 to count - 1, every order equally likely (Fisher & Yates 1938, Durstenfeld 1964).
+// Every order is equally likely (Fisher & Yates 1938, Durstenfeld 1964).
+template <class Item>
+void shuffle(std::vector<Item>& items, Dice& dice) {
+  for (std::size_t left = items.size(); left > 1; --left) std::swap(items[left - 1], items[dice.below(left)]);
+}
+
+// 0 to count - 1, shuffled.
 inline std::vector<int> shuffled(int count, Dice dice) {
   std::vector<int> order(count);
   std::iota(order.begin(), order.end(), 0);
-  for (int last = count - 1; last > 0; --last) std::swap(order[last], order[dice.below(last + 1ull)]);
+  shuffle(order, dice);
   return order;
 }
 

@@ -4,7 +4,6 @@
 #include <limits>
 #include <numeric>
 #include <tuple>
-#include <utility>
 
 namespace cleave {
 namespace {
@@ -28,54 +27,50 @@ void ConstraintOrder::begin(const PreparedStep& step) {
 
 std::span<const RowGroup> ConstraintOrder::next(const PreparedStep& step) {
   if (kind_ == OrderKind::natural) return step.groups();
-  if (kind_ == OrderKind::random) {
-    for (std::size_t last = constraints_.size(); last > 1; --last)
-      std::swap(constraints_[last - 1], constraints_[dice_.below(last)]);
-  }
+  if (kind_ == OrderKind::random) shuffle(constraints_, dice_);
   return constraints_;
 }
 
 void ConstraintOrder::list_constraints(const PreparedStep& step) {
   const std::vector<int>& constraint = step.problem().row_constraint;
   constraints_.clear();
+  first_of_group_.clear();
   for (const RowGroup& g : step.groups()) {
+    first_of_group_.push_back(static_cast<int>(constraints_.size()));
     for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
       if (r == g.first_row || constraint[r] != constraint[r - 1])
         constraints_.push_back({g.body_a, g.body_b, r, 0});
       ++constraints_.back().row_count;
     }
   }
+  first_of_group_.push_back(static_cast<int>(constraints_.size()));
 }
 
-// Breadth first, by passes over all constraints: there are as many as levels.
+// Breadth first over bodies: each is of the least level of its constraints.
 void ConstraintOrder::measure_levels(const PreparedStep& step) {
   level_of_body_.assign(step.body_count(), kUnreached);
   level_.assign(constraints_.size(), kUnreached);
+  reached_.clear();
   for (std::size_t i = 0; i < constraints_.size(); ++i)
-    if (starts(step.problem(), constraints_[i])) level_[i] = 0;
-  for (int level = 0; reach(level) > 0; ++level) {
+    if (starts(step.problem(), constraints_[i])) reach(static_cast<int>(i), 0);
+  for (std::size_t next = 0; next < reached_.size(); ++next) {
+    const int body = reached_[next];
+    for (const int side : step.sides_of_body(body)) {
+      for (int i = first_of_group_[side / 2]; i < first_of_group_[side / 2 + 1]; ++i)
+        reach(i, level_of_body_[body] + 1);
+    }
   }
 }
 
-// Bodies of constraints of the level, then the constraints that these reach. How many constraints those are.
-int ConstraintOrder::reach(int level) {
-  const auto reach_body = [&](int body) {
-    if (body >= 0) level_of_body_[body] = std::min(level_of_body_[body], level);
-  };
-  for (std::size_t i = 0; i < constraints_.size(); ++i) {
-    if (level_[i] != level) continue;
-    reach_body(constraints_[i].body_a);
-    reach_body(constraints_[i].body_b);
+// The constraint and its bodies, where nothing has reached them before.
+void ConstraintOrder::reach(int constraint, int level) {
+  if (level_[constraint] != kUnreached) return;
+  level_[constraint] = level;
+  for (const int body : {constraints_[constraint].body_a, constraints_[constraint].body_b}) {
+    if (body < 0 || level_of_body_[body] != kUnreached) continue;
+    level_of_body_[body] = level;
+    reached_.push_back(body);
   }
-  int reached = 0;
-  for (std::size_t i = 0; i < constraints_.size(); ++i) {
-    const auto [a, b] = std::pair(constraints_[i].body_a, constraints_[i].body_b);
-    if (level_[i] != kUnreached) continue;
-    if (level_of_body_[a] != level && (b < 0 || level_of_body_[b] != level)) continue;
-    level_[i] = level + 1;
-    ++reached;
-  }
-  return reached;
 }
 
 void ConstraintOrder::sort(const PreparedStep& step) {

@@ -35,7 +35,7 @@ class ConstraintOrder {
  private:
   void list_constraints(const PreparedStep& step);
   void measure_levels(const PreparedStep& step);
-  int reach(int level);
+  void reach(int constraint, int level);
   void sort(const PreparedStep& step);
 
   OrderKind kind_;
@@ -44,7 +44,8 @@ class ConstraintOrder {
   std::vector<RowGroup> constraints_;
   // Scratch.
   std::vector<RowGroup> unsorted_;
-  std::vector<int> order_, level_, level_of_body_;
+  std::vector<int> first_of_group_;  // constraints of each group, in constraints_ before they are sorted
+  std::vector<int> order_, level_, level_of_body_, reached_;
 };
 
 }  // namespace cleave
