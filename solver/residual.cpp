@@ -38,15 +38,33 @@ Vector6 jacobian_block(const StepProblem& problem, int row, int side) {
   return ConstVector6(&problem.jacobian[12 * row + 6 * side]).cast<Real>();
 }
 
-std::vector<BodyState> find_body_states(const StepProblem& problem, std::span<const double> impulse) {
+// Rows that are asked for: (m) 1, or all.
+using Asked = std::span<const char>;
+
+bool is_asked(Asked asked, int row) { return asked.empty() || asked[row] != 0; }
+
+// (n) 1 where a row that is asked for is on the body.
+std::vector<char> find_bodies_asked(const StepProblem& problem, Asked asked) {
+  std::vector<char> is_needed(problem.body_count(), asked.empty());
+  for (int r = 0; r < static_cast<int>(asked.size()); ++r)
+    for (const int body : {problem.row_body[2 * r], problem.row_body[2 * r + 1]})
+      if (body >= 0 && asked[r]) is_needed[body] = 1;
+  return is_needed;
+}
+
+std::vector<BodyState> find_body_states(const StepProblem& problem, std::span<const double> impulse,
+                                        Asked asked = {}) {
   std::vector<BodyState> bodies(problem.body_count());
+  const std::vector<char> is_needed = find_bodies_asked(problem, asked);
   for (int r = 0; r < problem.row_count(); ++r) {
     for (int side = 0; side < 2; ++side) {
       const int body = problem.row_body[2 * r + side];
-      if (body >= 0) bodies[body].impulse += jacobian_block(problem, r, side) * Real(impulse[r]);
+      if (body >= 0 && is_needed[body])
+        bodies[body].impulse += jacobian_block(problem, r, side) * Real(impulse[r]);
     }
   }
   for (int i = 0; i < problem.body_count(); ++i) {
+    if (!is_needed[i]) continue;
     BodyState& body = bodies[i];
     body.mass_factor.compute(ConstMatrix6(&problem.mass[36 * i]).cast<Real>());
     body.velocity =
@@ -166,10 +184,14 @@ int count_rows_of_set(const StepProblem& problem, int row) {
 
 // (m)
 std::vector<double> find_residuals(const StepProblem& problem, const std::vector<BodyState>& bodies,
-                                   std::span<const double> impulse) {
+                                   std::span<const double> impulse, Asked asked = {}) {
   std::vector<double> residuals(impulse.size());
   for (int r = 0; r < problem.row_count();) {
     const int count = count_rows_of_set(problem, r);
+    if (!is_asked(asked, r)) {
+      r += count;
+      continue;
+    }
     if (count == 1) {
       residuals[r] = find_row_residual(problem, bodies, r, axis_of_row(problem, impulse, r));
     } else {
@@ -262,10 +284,11 @@ ResidualReport judge(const StepProblem& problem, std::span<const double> impulse
   return report;
 }
 
-std::vector<double> row_residuals(const StepProblem& problem, std::span<const double> impulse) {
+std::vector<double> row_residuals(const StepProblem& problem, std::span<const double> impulse,
+                                  std::span<const char> asked) {
   assert(std::ssize(impulse) == problem.row_count());
   if (!all_finite(impulse)) return std::vector<double>(impulse.size(), kNan);
-  return find_residuals(problem, find_body_states(problem, impulse), impulse);
+  return find_residuals(problem, find_body_states(problem, impulse, asked), impulse, asked);
 }
 
 }  // namespace cleave

@@ -97,6 +97,8 @@ ExpectedRows::ExpectedRows(const StoredManifest& manifest) {
   if (common_.repartition.empty()) common_.repartition = Repartition().text;  // record has no such option
   common_.body_order = manifest.option("body-order");
   if (common_.body_order.empty()) common_.body_order = BodyOrder().text;  // nor this one
+  common_.model = manifest.option("model");
+  if (common_.model.empty()) common_.model = "full";  // nor this one
   separate_ = common_.mode == "separate";
   add_combinations(manifest);
   if (is_replay_) {

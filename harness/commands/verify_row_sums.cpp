@@ -49,6 +49,7 @@ class RowAlone {
     check_sizes();
     check_partition();
     if (!has_result(text("status"))) return;
+    check_model();
     check_times();
     check_residuals();
   }
@@ -108,14 +109,39 @@ class RowAlone {
     const std::string& origin = text("partition_origin");
     if (origin == "kept" || (origin != "repaired" && text("refiner") == "none"))
       for (const std::string& column : both) require_equal(column + "_before", number(column));
-    if (text("kernel") == "schur-rows") require_equal("interface_unknowns", number("interface_rows"));
+    check_interface();
+  }
+
+  // Rows that were left out of the last solve are in the partition and not in its interface.
+  void check_interface() {
+    const bool is_full =
+        number("model_rows_left_out") + number("model_rows_at_rest") == number("model_rows_returned");
+    const double unknowns = number("interface_unknowns");
+    if (text("kernel") == "schur-rows") {
+      const double most = number("interface_rows");
+      require(is_full ? unknowns == most : unknowns <= most, "interface_unknowns",
+              (is_full ? "" : "at most ") + number_text(most));
+    }
     // The solver's cover is a least one where the cut pairs form a bipartite graph, the counted one is greedy. An analysis
     // that is kept keeps its cover, of a step that had other cut pairs.
     if (text("kernel") == "schur-bodies" && text("reuse_analysis") != "1" && number("session") != 1) {
-      const double unknowns = number("interface_unknowns"), most = 6 * number("interface_cover_bodies");
-      require(unknowns <= most && std::fmod(unknowns, 6) == 0 && (unknowns > 0) == (most > 0),
+      const double most = 6 * number("interface_cover_bodies");
+      require(unknowns <= most && std::fmod(unknowns, 6) == 0 && (!is_full || (unknowns > 0) == (most > 0)),
               "interface_unknowns", "a multiple of 6, at most " + number_text(most));
     }
+  }
+
+  // Every pass after the first one is for rows that came back.
+  void check_model() {
+    const double passes = number("model_passes"), returned = number("model_rows_returned");
+    const double left_out = number("model_rows_left_out") + number("model_rows_at_rest");
+    if (text("model") == "full")
+      for (const char* column : {"model_rows_left_out", "model_rows_at_rest", "model_rows_returned"})
+        require_equal(column, 0);
+    require(left_out <= number("rows"), "model_rows_left_out", "with those at rest at most the rows");
+    require(returned <= left_out, "model_rows_returned", "at most those left out and at rest");
+    require((passes > 1) == (returned > 0) && passes >= 1 && passes <= kMostPasses, "model_passes",
+            "more than 1 where rows returned, at most " + std::to_string(kMostPasses));
   }
 
   void check_origin() {

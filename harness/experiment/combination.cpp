@@ -108,6 +108,7 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
       context_(&context),
       solver_(make_solver(solver, solve_options_, context)),
       keeper_(options.repartition) {
+  if (options.model == Model::automatic) planner_.emplace();
   if (solver_->uses_partition()) {
     setup_ = {partitioner, refiner, options.skip_small_islands, arity_of(solver), options.body_order};
     splitter_.emplace(setup_);
@@ -162,7 +163,8 @@ void Combination::solve_parts(const StepProblem& problem, const Parts& parts, Ou
   outcome.solution.impulse = problem.warm_impulse;
   outcome.solution.velocity.assign(problem.free_velocity.size(), 0.0);
   const CoreMeter meter;
-  outcome.summary = solver_->solve(problem, parts, outcome.solution);
+  outcome.summary = planner_ ? planner_->solve(*solver_, problem, parts, outcome.solution, outcome.model)
+                             : solver_->solve(problem, parts, outcome.solution);
   outcome.cores = meter.stop();
   outcome.status = outcome.summary.status;
 }
@@ -203,6 +205,7 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
   row.ode_messages += chosen.outcome.summary.engine_messages;
   if (repeats.front().split) set_split(repeats, row);
   row.set_summary(chosen.outcome.summary);
+  if (chosen.outcome.solved()) row.set_model(chosen.outcome.model);
   row.peak_memory_mb = peak_memory_mb();
   set_verdict(problem, chosen.outcome, row);
   if (chosen.split) {
@@ -275,6 +278,7 @@ RunOptions without_history(RunOptions options) {
   options.session = false;
   options.repartition = {};
   options.body_order = {};
+  options.model = Model::full;
   return options;
 }
 

@@ -14,6 +14,7 @@
 #include "harness/base/combination_label.h"
 #include "harness/experiment/core_meter.h"
 #include "harness/experiment/friction_converged.h"
+#include "harness/experiment/model_planner.h"
 #include "harness/experiment/options.h"
 #include "harness/experiment/partition_keeper.h"
 #include "harness/experiment/splitter.h"
@@ -38,6 +39,7 @@ struct Outcome {
       SolveStatus::ok;  // the solver's, but not_converged or diverged where the judge disagrees
   SolveSummary summary;
   CoreTimes cores{};  // of the solve
+  ModelCounts model;  // of --model auto
   Solution solution;
   std::vector<int> part_of_body;    // (n) what `measure` split the bodies into; empty where parts are ignored
   std::vector<int> parent_of_part;  // the tree of these parts; empty: one level
@@ -99,7 +101,8 @@ class Combination {
   int repeats_;
   SolveOptions solve_options_;
   const StepContext* context_;
-  std::unique_ptr<StepSolver> solver_;  // none after a solve without memory: the next one makes it anew
+  std::unique_ptr<StepSolver> solver_;   // none after a solve without memory: the next one makes it anew
+  std::optional<ModelPlanner> planner_;  // of --model auto
   std::optional<Splitter> splitter_;
   PartitionKeeper keeper_;
 };

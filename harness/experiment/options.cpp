@@ -243,6 +243,14 @@ void read_session(const Given& given, RunOptions& options) {
   options.repeats = 1;
 }
 
+// ODE's own solvers read the world and would solve every row of it.
+void check_reads_problem(const RunOptions& options) {
+  for (const AlgorithmEntry& ode : ode_baselines())
+    if (std::ranges::count(options.solvers, ode.name, &Algorithm::name) > 0)
+      reject("model", "auto leaves rows out of the step problem, which --solver " + std::string(ode.name) +
+                          " does not read; allowed: full");
+}
+
 RunOptions parse_run_options(const std::map<std::string, std::string>& given,
                              const std::set<std::string>& stored) {
   require(given, "scene", "is required; choices: " + joined(names_of(scenes())));
@@ -256,6 +264,7 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given,
   leave_out_unable(given, options);
   read_session(given, options);
   read_friction(options);
+  if (options.model == Model::automatic) check_reads_problem(options);
   check_owned(options, stored, true);
   if (options.mode == RunMode::separate) {
     exclude(given, "advance",

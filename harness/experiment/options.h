@@ -27,6 +27,9 @@ enum class RunMode { lockstep, separate };
 // What refiners lower: the rows of the cut, or the modelled time of a solve (partition/cost_model.h).
 enum class Objective { rows, cost };
 
+// Which rows of a step are solved: all, or those that can matter to it (model_planner.h).
+enum class Model { full, automatic };
+
 struct RunOptions {
   Algorithm scene;
   std::vector<Algorithm> partitioners, refiners, solvers;
@@ -45,6 +48,7 @@ struct RunOptions {
   bool session = false;  // solvers carry what pays from step to step; each cell is then solved once
   Repartition repartition;
   BodyOrder body_order;
+  Model model = Model::full;
   int threads = 1;
   double memory_limit_gb = std::numeric_limits<double>::quiet_NaN();             // NaN: what the machine has
   std::uint64_t memory_limit_bytes = std::numeric_limits<std::uint64_t>::max();  // what that is

@@ -185,6 +185,10 @@ std::vector<OptionSpec> experiment_options() {
            at(&RunOptions::session)),
       repartition(),
       body_order(),
+      word({"model", About::solver, kRunAndReplay}, {"full", "auto"},
+           "full: every row is solved; auto: those that can matter to the step, the judge bringing back what "
+           "does",
+           at(&RunOptions::model)),
       integer({"threads", kAbout, kEverywhere, kChangesNoRow}, {1, 1024}, "threads of a solve",
               at(&RunOptions::threads)),
       number({"memory-limit", kAbout, kEverywhere, kChangesNoRow}, kPositive,

@@ -45,6 +45,7 @@ StepRecord solve_columns(const RunOptions& options) {
   row.session = options.session;
   row.repartition = options.repartition.text;
   row.body_order = options.body_order.text;
+  row.model = options.model == Model::full ? "full" : "auto";
   return row;
 }
 

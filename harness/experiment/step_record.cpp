@@ -139,6 +139,13 @@ void StepRecord::set_friction(const FrictionMismatch& mismatch) {
   friction_beyond_share = mismatch.friction_beyond_share;
 }
 
+void StepRecord::set_model(const ModelCounts& counts) {
+  model_rows_left_out = counts.rows_left_out;
+  model_rows_at_rest = counts.rows_at_rest;
+  model_rows_returned = counts.rows_returned;
+  model_passes = counts.passes;
+}
+
 std::vector<Column> columns() {
   std::vector<Column> list;
   const StepRecord record;

@@ -25,6 +25,7 @@
 #include "harness/base/parameter.h"
 #include "harness/experiment/cell_measures.h"
 #include "harness/experiment/friction_mismatch.h"
+#include "harness/experiment/model_planner.h"
 #include "partition/partition.h"
 #include "solver/residual.h"
 #include "solver/step_solver.h"
@@ -116,7 +117,8 @@ struct StepRecord {
   double factor_predicted_mb = kUnmeasured;
   std::string auto_choice = "-";
   double friction_beyond_share = kUnmeasured;
-  std::string body_order = "-";
+  std::string body_order = "-", model = "-";
+  int model_rows_left_out = -1, model_rows_at_rest = -1, model_rows_returned = -1, model_passes = -1;
 
   std::string parameter(const std::string& column) const {
     const auto found = parameters.find(column);
@@ -133,6 +135,7 @@ struct StepRecord {
   void set_summary(const SolveSummary& summary);
   void set_verdict(const ResidualReport& report);
   void set_friction(const FrictionMismatch& mismatch);
+  void set_model(const ModelCounts& counts);
 
  private:
   template <std::size_t N>
@@ -311,6 +314,12 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit_parameters(ParameterColumn::Place::newest);
   visit("body_order", r.body_order, "numbers by which bodies are split, as given", About::partition);
   visit_parameters(ParameterColumn::Place::behind_body_order);
+  visit("model", r.model, "full: every row is solved; auto: those that can matter", About::solver);
+  visit("model_rows_left_out", r.model_rows_left_out, "rows that the first solve left at impulse 0");
+  visit("model_rows_at_rest", r.model_rows_at_rest,
+        "rows of islands that kept the impulses of the step before in the first solve");
+  visit("model_rows_returned", r.model_rows_returned, "rows of both that the judge brought back");
+  visit("model_passes", r.model_passes, "solves of the step, one more each time rows came back");
 }
 
 // "run_id,scene,...\n"

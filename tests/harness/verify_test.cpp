@@ -342,6 +342,18 @@ TEST_F(Verify, FindsAChangedStatusAndItsReason) {
   expect_failure(out(), {"status_reason = none at all, allowed: - where status is ok"});
 }
 
+TEST_F(Verify, FindsCountsOfTheModelThatCannotBe) {
+  for (const char* column :
+       {"model_rows_left_out", "model_rows_at_rest", "model_rows_returned", "model_passes"}) {
+    fs::copy(*replayed_ / "out/steps.csv", out() / "steps.csv", fs::copy_options::overwrite_existing);
+    change_cell(column, "2");
+    expect_failure(out(), {std::string(column) + " = 2, allowed: "});
+  }
+  fs::copy(*replayed_ / "out/steps.csv", out() / "steps.csv", fs::copy_options::overwrite_existing);
+  change_cell("model", "auto");
+  expect_failure(out(), {"model = auto, by the manifest"});
+}
+
 // Times cannot be computed again, but they add up.
 TEST_F(Verify, FindsTimesThatDoNotAddUp) {
   for (const char* column : {"t_s_ms", "t_s_analyze_ms", "t_s_check_ms", "t_s_other_ms"}) {

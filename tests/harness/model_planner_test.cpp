@@ -1,0 +1,239 @@
+// Planned solves against solves of all rows: the same velocities on the scenes with contacts, whatever was left out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "harness/experiment/model_planner.h"
+#include "harness/experiment/options.h"
+#include "harness/experiment/problem_graph.h"
+#include "tests/harness/world_stepper.h"
+
+namespace cleave {
+namespace {
+
+struct PlannedScene {
+  std::map<std::string, std::string> options;
+  int steps;
+};
+
+// The fall, the impact, at rest, hit by the ball; several seeds stand for worlds at random.
+const std::vector<PlannedScene> kScenes = {
+    {{{"scene", "chain_drop"}, {"links", "24"}}, 90},
+    {{{"scene", "log_tower"}, {"layers", "5"}, {"logs", "3"}}, 90},
+    {{{"scene", "rock_pile"}, {"bodies", "30"}}, 120},
+    {{{"scene", "rock_pile"}, {"bodies", "30"}, {"mu", "0"}}, 60},
+    {{{"scene", "rock_pile"}, {"bodies", "20"}, {"seed", "2"}, {"rock-shape", "sphere"}}, 100},
+    {{{"scene", "rock_pile"}, {"bodies", "20"}, {"seed", "3"}, {"cfm", "1e-8"}}, 100},
+    {{{"scene", "large_rock_pile"}, {"bodies", "30"}, {"seed", "4"}}, 120},
+    {{{"scene", "silo"}}, 20},
+    {{{"scene", "crane"}}, 20},
+    {{{"scene", "mixed_site"}, {"links", "50"}, {"rings", "1"}, {"dt", "0.001"}, {"cfm", "1e-8"}}, 20},
+};
+
+WorldStepper stepper_of(const PlannedScene& scene) {
+  std::map<std::string, std::string> given = scene.options;
+  given["out"] = "none";
+  const RunOptions options = parse_run_options(given);
+  return {std::make_unique<OdeWorld>(scene_row(options.scene), options.scene.settings, options.seed,
+                                     options.gravity_m_per_s2),
+          options.extract};
+}
+
+std::vector<int> one_part(const StepProblem& problem) { return std::vector<int>(problem.body_count(), 0); }
+
+struct Solved {
+  Solution solution;
+  ModelCounts counts;
+  SolveSummary summary;
+};
+
+Solved solve_with(const StepProblem& problem, const std::vector<RowPlan>& plan) {
+  const std::unique_ptr<StepSolver> solver = make_step_solver("exact", {});
+  Solved solved{{problem.warm_impulse, {}}, {}, {}};
+  solved.solution.velocity.assign(problem.free_velocity.size(), 0.0);
+  solved.summary =
+      ModelPlanner().solve(*solver, problem, one_part(problem), plan, solved.solution, solved.counts);
+  return solved;
+}
+
+double difference(const std::vector<double>& a, const std::vector<double>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+  return most;
+}
+
+void expect_full_answer(const StepProblem& problem, const Solved& solved) {
+  EXPECT_EQ(solved.summary.status, SolveStatus::ok) << solved.summary.message;
+  const ResidualReport report = judge(problem, solved.solution.impulse);
+  EXPECT_TRUE(report.exact) << report.residual_m_per_s;
+  const Solved full = solve_with(problem, std::vector<RowPlan>(problem.rhs.size(), RowPlan::solved));
+  EXPECT_EQ(full.counts.passes, 1);
+  EXPECT_LE(difference(solved.solution.velocity, full.solution.velocity), 1e-9);
+}
+
+TEST(ModelPlanner, ScenesMoveAsWithAllRows) {
+  for (const PlannedScene& scene : kScenes) {
+    WorldStepper world = stepper_of(scene);
+    int left_out = 0, returned = 0, rows = 0;
+    for (int step = 0; step < scene.steps; ++step) {
+      world.step();
+      SCOPED_TRACE(scene.options.at("scene") + ", step " + std::to_string(step));
+      const StepProblem& problem = world.problem();
+      const Solved solved = solve_with(problem, ModelPlanner().plan(problem));
+      expect_full_answer(problem, solved);
+      if (HasFailure()) return;
+      EXPECT_EQ(solved.counts.passes > 1, solved.counts.rows_returned > 0);
+      left_out += solved.counts.rows_left_out;
+      returned += solved.counts.rows_returned;
+      rows += problem.row_count();
+    }
+    EXPECT_LE(2 * returned, left_out) << "of " << rows << " rows, " << scene.options.at("scene");
+  }
+}
+
+// Extraction builds no friction rows where mu = 0; problems of others may have them.
+TEST(ModelPlanner, FrictionRowsWithoutBoundsAreLeftOut) {
+  WorldStepper world = stepper_of(kScenes.at(2));
+  world.steps(120);
+  StepProblem problem = world.problem();
+  int friction_rows = 0;
+  for (int row = 0; row < problem.row_count(); ++row) {
+    if (problem.row_kind[row] != RowKind::friction) continue;
+    problem.lower[row] = problem.upper[row] = problem.warm_impulse[row] = 0;
+    ++friction_rows;
+  }
+  ASSERT_GT(friction_rows, 0);
+  const std::vector<RowPlan> plan = ModelPlanner().plan(problem);
+  for (int row = 0; row < problem.row_count(); ++row)
+    EXPECT_TRUE(problem.row_kind[row] != RowKind::friction || plan[row] != RowPlan::solved) << row;
+  const Solved solved = solve_with(problem, ModelPlanner().plan(problem));
+  expect_full_answer(problem, solved);
+  EXPECT_GE(solved.counts.rows_left_out, friction_rows);
+}
+
+// A plan that leaves out rows in use: they come back, are counted, and the answer is the full one.
+TEST(ModelPlanner, RowsWronglyLeftOutComeBack) {
+  WorldStepper world = stepper_of(kScenes.at(2));
+  world.steps(120);
+  const StepProblem& problem = world.problem();
+  const Solved full = solve_with(problem, std::vector<RowPlan>(problem.rhs.size(), RowPlan::solved));
+  const auto loaded = [&](int row) {
+    return problem.row_kind[row] == RowKind::normal && full.solution.impulse[row] > 1;
+  };
+  std::vector<RowPlan> plan = ModelPlanner().plan(problem);
+  int row = 0;
+  while (row < problem.row_count() && !loaded(row)) ++row;
+  ASSERT_LT(row, problem.row_count());
+  plan[row] = RowPlan::zero;
+  const Solved solved = solve_with(problem, plan);
+  expect_full_answer(problem, solved);
+  EXPECT_GE(solved.counts.rows_returned, 1);
+  EXPECT_GE(solved.counts.passes, 2);
+  EXPECT_GT(solved.summary.factorizations, 0);
+}
+
+TEST(ModelPlanner, WithNothingLeftAllRowsComeBackInTheLastPass) {
+  WorldStepper world = stepper_of(kScenes.at(2));
+  world.steps(120);
+  const StepProblem& problem = world.problem();
+  const Solved solved = solve_with(problem, std::vector<RowPlan>(problem.rhs.size(), RowPlan::zero));
+  expect_full_answer(problem, solved);
+  EXPECT_EQ(solved.counts.rows_left_out, problem.row_count());
+  EXPECT_LE(solved.counts.rows_returned, problem.row_count());
+  EXPECT_LE(solved.counts.passes, kMostPasses);
+}
+
+TEST(ModelPlanner, WhatMovesIsTakenBackFromRest) {
+  WorldStepper world = stepper_of(kScenes.at(2));
+  world.steps(120);
+  const StepProblem& problem = world.problem();
+  const Solved solved = solve_with(problem, std::vector<RowPlan>(problem.rhs.size(), RowPlan::at_rest));
+  expect_full_answer(problem, solved);
+  EXPECT_EQ(solved.counts.rows_at_rest, problem.row_count());
+  EXPECT_EQ(solved.counts.rows_left_out, 0);
+  EXPECT_GT(solved.counts.rows_returned, 0);
+}
+
+// The answer of a step is its own rest: with its impulses as those of the step before all islands rest, and one body's push
+// wakes the bodies that rows join to it and no others.
+TEST(ModelPlanner, IslandsRestAndWakeApart) {
+  WorldStepper world = stepper_of({{{"scene", "rock_pile"}, {"bodies", "30"}}, 0});
+  world.steps(90);
+  StepProblem problem = world.problem();
+  problem.warm_impulse =
+      solve_with(problem, std::vector<RowPlan>(problem.rhs.size(), RowPlan::solved)).solution.impulse;
+  const std::vector<RowPlan> resting = ModelPlanner().plan(problem);
+  EXPECT_EQ(std::ranges::count(resting, RowPlan::at_rest), problem.row_count());
+  const Solved rest = solve_with(problem, resting);
+  expect_full_answer(problem, rest);
+  EXPECT_EQ(rest.counts.passes, 1);
+  EXPECT_EQ(rest.solution.impulse, problem.warm_impulse);
+
+  const int pushed = problem.row_body[0];
+  problem.free_velocity[6 * pushed] += 0.5;
+  std::vector<int> island(problem.body_count());
+  count_islands(body_graph_of(problem), &island);
+  const std::vector<RowPlan> woken = ModelPlanner().plan(problem);
+  int moving = 0;
+  for (int row = 0; row < problem.row_count(); ++row) {
+    const bool moves = island[problem.row_body[2 * row]] == island[pushed];
+    EXPECT_EQ(woken[row] == RowPlan::at_rest, !moves) << row;
+    moving += moves;
+  }
+  EXPECT_LT(moving, problem.row_count());
+  const Solved solved = solve_with(problem, woken);
+  expect_full_answer(problem, solved);
+  EXPECT_EQ(solved.counts.rows_at_rest, problem.row_count() - moving);
+}
+
+TEST(ModelPlanner, TurnedBoxesRest) {
+  WorldStepper world = stepper_of({{{"scene", "rock_pile"}, {"bodies", "30"}}, 0});
+  world.steps(90);
+  StepProblem problem = world.problem();
+  problem.box_angle_rad.assign(problem.rhs.size(), 0.0);
+  for (int row = 0; row < problem.row_count(); ++row)
+    if (problem.row_kind[row] == RowKind::normal) problem.box_angle_rad[row] = 0.6;
+  problem.warm_impulse =
+      solve_with(problem, std::vector<RowPlan>(problem.rhs.size(), RowPlan::solved)).solution.impulse;
+  EXPECT_EQ(std::ranges::count(ModelPlanner().plan(problem), RowPlan::at_rest), problem.row_count());
+}
+
+// A contact that parts faster than anything can push is left out; one that parts slowly beside a violated row stays.
+TEST(ModelPlanner, MarginIsWhatOtherRowsAreViolatedBy) {
+  StepProblem problem;
+  problem.h_s = 0.01;
+  problem.mass.assign(36, 0.0);
+  for (int k = 0; k < 6; ++k) problem.mass[7 * k] = 1;
+  problem.free_velocity = {0, 0, -1, 0, 0, 0};
+  problem.row_body = {0, -1, 0, -1};
+  problem.jacobian.assign(24, 0.0);
+  problem.jacobian[2] = 1;        // falls onto the floor at 1 m/s
+  problem.jacobian[12 + 2] = -1;  // parts from the ceiling at 1 m/s and its gap
+  problem.compliance = {1e-3, 1e-3};
+  problem.lower = {0, 0};
+  problem.upper.assign(2, std::numeric_limits<double>::infinity());
+  problem.row_kind.assign(2, RowKind::normal);
+  problem.friction_row = {-1, -1};
+  problem.friction_coefficient = {0, 0};
+  problem.row_constraint = {0, 1};
+  problem.contact_point.assign(6, 0.0);
+  problem.warm_impulse = {0, 0};
+  for (const auto& [gap_m_per_s, is_left_out] : {std::pair{0.5, true}, {-0.5, false}}) {
+    problem.rhs = {0, -gap_m_per_s};
+    ASSERT_EQ(find_problem_error(problem), "");
+    EXPECT_EQ(ModelPlanner().plan(problem),
+              (std::vector<RowPlan>{RowPlan::solved, is_left_out ? RowPlan::zero : RowPlan::solved}));
+    expect_full_answer(problem, solve_with(problem, ModelPlanner().plan(problem)));
+  }
+  problem.warm_impulse = {0, 1};
+  EXPECT_EQ(ModelPlanner().plan(problem), std::vector<RowPlan>(2, RowPlan::solved))
+      << "it was loaded in the step before";
+}
+
+}  // namespace
+}  // namespace cleave

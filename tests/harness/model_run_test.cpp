@@ -1,0 +1,73 @@
+// --model auto through the program: the same velocities, rows that count what was left out, and a directory that verifies.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/harness/run_program.h"
+
+namespace cleave {
+namespace {
+
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+const Words kPile = {"run", "--scene",         "rock_pile", "--bodies",  "30", "--steps",
+                     "60",  "--measure-every", "3",         "--repeats", "1"};
+
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+int sum(const CsvTable& table, const std::string& column) {
+  int total = 0;
+  for (const std::string& cell : table.column(column)) total += std::stoi(cell);
+  return total;
+}
+
+TEST(ModelRun, LeavesRowsOutAndChangesNoVelocity) {
+  const TemporaryDirectory scratch;
+  const fs::path out = scratch / "auto";
+  const ProgramResult run =
+      run_cleave(with(kPile, {"--solver", "exact,schur,pivot:schur-bodies", "--partitioner", "mix", "--refiner",
+                              "fm", "--max-bodies", "8", "--model", "auto", "--out", out}));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const CsvTable rows = read_csv(out / "steps.csv");
+  EXPECT_GT(sum(rows, "model_rows_left_out") + sum(rows, "model_rows_at_rest"), 0);
+  for (const std::string& spread : rows.column("velocity_spread_m_per_s")) EXPECT_LE(std::stod(spread), 1e-9);
+  EXPECT_EQ(rows.column("status"), Words(rows.rows.size(), "ok"));
+  EXPECT_EQ(rows.column("model"), Words(rows.rows.size(), "auto"));
+  const ProgramResult verified = run_cleave({"verify", out});
+  EXPECT_EQ(verified.exit_code, 0) << verified.out;
+}
+
+TEST(ModelRun, ReplayTakesItAndRecordsNothing) {
+  const TemporaryDirectory scratch;
+  ASSERT_EQ(run_cleave({"record", "--scene", "rock_pile", "--bodies", "30", "--at", "30", "--out",
+                        scratch / "recorded"})
+                .exit_code,
+            0);
+  const ProgramResult replay = run_cleave({"replay", scratch / "recorded/rock_pile_step000030.h5", "--solver",
+                                           "exact", "--model", "auto", "--out", scratch / "out"});
+  EXPECT_EQ(replay.exit_code, 0) << replay.err;
+  EXPECT_EQ(read_csv(scratch / "out/steps.csv").at(0, "model"), "auto");
+  EXPECT_EQ(run_cleave({"verify", scratch / "out"}).exit_code, 0);
+}
+
+TEST(ModelRun, OdesOwnSolversAreNamed) {
+  const TemporaryDirectory scratch;
+  const ProgramResult run =
+      run_cleave(with(kPile, {"--solver", "ode-step", "--model", "auto", "--out", scratch / "out"}));
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.err.find(
+                "--model: auto leaves rows out of the step problem, which --solver ode-step does not read"),
+            std::string::npos)
+      << run.err;
+  EXPECT_FALSE(fs::exists(scratch / "out/steps.csv"));
+}
+
+}  // namespace
+}  // namespace cleave
