@@ -92,6 +92,7 @@ COMMANDS = {
     "test": Command({"--preset": "preset"}, passes_on=True),
     "torture": Command({"--minutes": "count", "--seed": "seed", "--trials": "trials", "--count": "count", "--only": "seed",
                         "--patience": "count", "--side-by-side": "count", **MEASURED}, ("--minutes", "1"), runs=True),
+    "tradeoff": Command({"--most-sweeps": "count", "--steps": "count", "--threads": "count", **MEASURED}, runs=True),
     "two_threads": Command({"--bodies": "rock piles", "--rounds": "count", **MEASURED}, runs=True),
     "validate_model": Command({"--limit": "range"}, ("{tree}", "{tree}"), ("{tree}",)),
     "view": Command({"--out": "output file"}, ("{tree}",), ("{tree}",)),

@@ -1,0 +1,82 @@
+"""What scripts/tradeoff measured: how long every solver takes to a residual, and what its answers do to a motion.
+
+A residual is held against a limit as the judge does it: divided by max(1, largest free velocity). A solver that iterates was
+told to stop at each limit (`@until`); of its solves that are within a limit the fastest counts. A direct solver has one time
+for all limits that its residual meets. Where no solve is within a limit the time is infinite: never.
+"""
+import dataclasses
+import math
+
+KEY = ("scene", "bodies", "cfm", "step")
+LIMITS = tuple(10.0**-power for power in range(1, 9))
+EXACT = "exact"
+BUDGET = ("until", "sweeps")  # parameters that say how long to go on, not what is done
+
+
+@dataclasses.dataclass(frozen=True)
+class Problem:
+    """One recorded step. times_ms: {method: {limit: ms, infinite for never}}; iterative: methods that were given limits."""
+    key: tuple
+    rows: int
+    times_ms: dict
+    iterative: tuple
+
+    def time_ms(self, method, limit):
+        return self.times_ms[method][limit]
+
+    def fastest(self, limit, methods):
+        """(method, ms) of the first fastest of these."""
+        return min(((method, self.time_ms(method, limit)) for method in methods), key=lambda pair: pair[1])
+
+    def crossover(self):
+        """The largest limit from which on down EXACT is faster than all that iterate; None where it is not even at the last."""
+        found = None
+        for limit in reversed(LIMITS):
+            if self.time_ms(EXACT, limit) > self.fastest(limit, self.iterative)[1]:
+                break
+            found = limit
+        return found
+
+
+def method_of(row):
+    """A solver's text without its budget, and the parts it was given."""
+    name, *parameters = row["solver"].split("@")
+    kept = [text for text in parameters if text.partition("=")[0] not in BUDGET]
+    parts = "" if row["partitioner"] == "-" else f", {row['partitioner']}+{row['refiner']}"
+    return "@".join([name, *kept]) + parts
+
+
+def _relative_residual(row):
+    return float(row["residual_m_per_s"]) / max(1.0, float(row["largest_free_velocity_m_per_s"]))
+
+
+def _total_ms(row):
+    return float(row["t_s_ms"]) + (0 if row["partitioner"] == "-" else float(row["t_pr_ms"]))
+
+
+def problems(rows):
+    """[Problem], in the order of their first rows."""
+    found = {}
+    for row in rows:
+        count, times, iterative = found.setdefault(tuple(row[name] for name in KEY), (int(row["rows"]), {}, {}))
+        method = method_of(row)
+        reached = times.setdefault(method, dict.fromkeys(LIMITS, math.inf))
+        if "@until=" in row["solver"]:
+            iterative[method] = True
+        for limit in LIMITS:
+            if _relative_residual(row) <= limit:
+                reached[limit] = min(reached[limit], _total_ms(row))
+    return [Problem(key, count, times, tuple(iterative)) for key, (count, times, iterative) in found.items()]
+
+
+def profile(found, limit):
+    """{method: sorted ratios of its time to the fastest on each problem, infinite where it never got there} (Dolan and More,
+    Mathematical Programming 91, 2002). Problems that nobody solved are left out; all need the same methods."""
+    solved = [problem for problem in found if not math.isinf(problem.fastest(limit, problem.times_ms)[1])]
+    methods = list(solved[0].times_ms) if solved else []
+    return {method: sorted(problem.time_ms(method, limit) / problem.fastest(limit, problem.times_ms)[1] for problem in solved)
+            for method in methods}
+
+
+def failures(ratios):
+    return sum(math.isinf(ratio) for ratio in ratios)

@@ -1,0 +1,48 @@
+"""What becomes of a scene that one solver alone moves: ordinary solvers, and QuickStep in small steps of one iteration each, as
+engines step today (Macklin et al., Small Steps in Physics Simulation, 2019)."""
+import dataclasses
+
+from cleave_scripts.results.command import say
+from cleave_scripts.results.programs import run
+from cleave_scripts.results.steps import load_steps
+
+SCENES = ("chain_drop", "log_tower", "rock_pile")
+STEP_S = 1 / 60
+MEASURED = 10  # times a motion
+MOTION_COLUMNS = ("scene", "mover", "step", "time_s", "rows", "iterations", "residual_m_per_s", "max_penetration_m", "joint_drift_m",
+                  "kinetic_energy_j", "potential_energy_j", "t_s_ms", "status")
+
+
+@dataclasses.dataclass(frozen=True)
+class Mover:
+    """A solver that advances a world, in so many substeps a step."""
+    name: str
+    solver: str
+    options: tuple = ()
+    substeps: int = 1
+
+    def arguments(self, steps):
+        return ("--solver", self.solver, "--advance", self.solver, *self.options, "--steps", steps * self.substeps,
+                "--measure-every", max(1, steps // MEASURED) * self.substeps, "--dt", repr(STEP_S / self.substeps))
+
+
+def _quickstep(iterations, substeps):
+    text = f"ode-quickstep, {iterations} iterations" if substeps == 1 else f"ode-quickstep, {substeps} substeps of {iterations}"
+    return Mover(text, "ode-quickstep", ("--quickstep-iterations", iterations), substeps)
+
+
+MOVERS = (Mover("exact", "exact"),
+          *(Mover(f"{name}, {sweeps} sweeps", f"{name}@sweeps={sweeps}") for name in ("pgs", "pgs-colored", "apgd")
+            for sweeps in (20, 100, 500)),
+          *(_quickstep(iterations, 1) for iterations in (20, 100)), *(_quickstep(1, substeps) for substeps in (5, 20)))
+
+
+def motion_rows(program, scratch, steps):
+    """A row a scene, mover and measured step, as in steps.csv; `mover` is the mover's name."""
+    for scene in SCENES:
+        for mover in MOVERS:
+            say(f"{scene} moved by {mover.name}")
+            run([program, "run", "--scene", scene, "--partitioner", "mindp", "--refiner", "none", *mover.arguments(steps), "--repeats",
+                 1, "--out", scratch / "motion", "--force"], allowed=(0, 2))
+            for row in load_steps(scratch / "motion" / "steps.csv")[0]:
+                yield {**row, "mover": mover.name}
