@@ -1,0 +1,81 @@
+"""Speed against accuracy: time to a residual, what a motion becomes, and which parts solvers that iterate want."""
+import math
+
+from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements import partitions_of_solvers as parts_of
+from cleave_scripts.measurements.accuracy import EXACT, problems
+from cleave_scripts.table import text
+
+COMMAND = "scripts/tradeoff"
+TIMES, MOTION, PARTS = (("tradeoff.csv", COMMAND), ("tradeoff_motion.csv", COMMAND), ("tradeoff_partitions.csv", COMMAND))
+SHOWN = (1e-2, 1e-4, 1e-6, 1e-8)
+
+
+def _power(value):
+    return f"{value:.0e}".replace("e-0", "e-")
+
+
+def _against(problem, limit):
+    """The fastest solver that iterates, as a multiple of exact."""
+    method, time_ms = problem.fastest(limit, problem.iterative)
+    if math.isinf(time_ms):
+        return "never"
+    return f"{text.number(time_ms / problem.time_ms(EXACT, limit))} ({method})"
+
+
+def time_to_accuracy(stored):
+    rows = need(stored.table(*TIMES), "time to accuracy", "status")
+    lines = []
+    for problem in problems(rows):
+        scene, bodies, cfm, _ = problem.key
+        crossover = problem.crossover()
+        lines.append([f"{scene.replace('_', ' ')}, {bodies} bodies, {problem.rows} rows, cfm {float(cfm):g}",
+                      text.number(problem.time_ms(EXACT, SHOWN[-1])), *(_against(problem, limit) for limit in SHOWN),
+                      _power(crossover) if crossover else "none"])
+    return (f"t_s of `{EXACT}`, ms, one thread, on recorded steps; then the fastest of the solvers that iterate, told to stop at a residual (m/s "
+            "over max(1, largest free velocity)), as a multiple of that: below 1 it is faster, *never* means that none got there in the sweeps "
+            f"it was given; last the largest residual from which on down `{EXACT}` is faster than all of them "
+            f"(`{COMMAND}`; {stored.origin(TIMES[0])}):\n\n" +
+            text.table(["", f"`{EXACT}`, ms", *map(_power, SHOWN), "`exact` faster from"], lines))
+
+
+def _last_of(rows):
+    return {(row["scene"], row["mover"]): row for row in rows}
+
+
+def motion(stored):
+    rows = need(stored.table(*MOTION), "motions", "mover")
+    last = _last_of(rows)
+    mean_ms = {}
+    for row in rows:
+        mean_ms.setdefault((row["scene"], row["mover"]), []).append(float(row["t_s_ms"]))
+    lines = [[scene.replace("_", " "), mover, text.number(sum(mean_ms[scene, mover]) / len(mean_ms[scene, mover])),
+              text.number(float(row["residual_m_per_s"])), text.number(1000 * float(row["max_penetration_m"])),
+              text.number(1000 * float(row["joint_drift_m"])), text.number(float(row["kinetic_energy_j"]) / 1000),
+              text.number(float(row["potential_energy_j"]) / 1000)] for (scene, mover), row in last.items()]
+    return (f"Scenes that one solver alone has moved, at the end (`{COMMAND}`; {stored.origin(MOTION[0])}). t_s is the mean of the measured steps, of one "
+            "substep where a step has several:\n\n" +
+            text.table(["scene", "moved by", "t_s, ms", "residual, m/s", "penetration, mm", "joint drift, mm", "kinetic energy, kJ",
+                        "potential energy, kJ"], lines))
+
+
+def _parts_cell(solver, ratios):
+    time, sweeps = ratios
+    if math.isinf(time):
+        return "never"
+    return text.number(time) + (f" ({text.number(sweeps)})" if solver in parts_of.ITERATIVE else "")
+
+
+def iterative_partitions(stored):
+    compared = parts_of.compare(need(stored.table(*PARTS), "partitions of solvers that iterate", "interface_rows"))
+    solvers = list(compared)
+    lines = [["+".join(parts), *(_parts_cell(solver, compared[solver][parts]) for solver in solvers)] for parts in compared[solvers[0]]]
+    agreed = ", ".join(f"`{one}` and `{other}` {parts_of.ranks_agree(compared, one, other):.2f}"
+                       for place, one in enumerate(solvers) for other in solvers[place + 1:])
+    return (f"t_pr + t_s of a partition against the least of all partitions, geometric mean over steps of the scenes at cfm {float(parts_of.CFM):g}; in "
+            f"brackets the same of sweeps. Solvers that iterate stop at {_power(parts_of.LIMIT)} m/s (`{COMMAND}`; {stored.origin(PARTS[0])}):\n\n" +
+            text.table(["", *(f"`{solver}`" for solver in solvers)], lines) +
+            f"\n\nRank correlation of the partitions' times between solvers: {agreed}.")
+
+
+BLOCKS = {"time_to_accuracy": time_to_accuracy, "motion": motion, "iterative_partitions": iterative_partitions}
