@@ -84,6 +84,26 @@ const Parameter& order_seed() {
   return parameter;
 }
 
+const Parameter& coloring() {
+  static const Parameter parameter{
+      .name = "coloring",
+      .kind = Kind::word,
+      .default_value = "greedy",
+      .words = {"greedy", "vivace"},
+      .help = "how pgs-colored finds colours: one group after another, or by chance",
+      .source = "solver/group_coloring.h"};
+  return parameter;
+}
+
+const Parameter& coloring_seed() {
+  static const Parameter parameter{.name = "coloring-seed",
+                                   .kind = Kind::integer,
+                                   .default_value = "1",
+                                   .range = {0, kInfinity},
+                                   .help = "seed of the dice of coloring=vivace"};
+  return parameter;
+}
+
 const Parameter& lemke_max_rows() {
   static const Parameter parameter{
       .name = "lemke-max-rows",

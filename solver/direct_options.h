@@ -25,6 +25,8 @@ const Parameter& sweeps();
 const Parameter& until();
 const Parameter& order();
 const Parameter& order_seed();
+const Parameter& coloring();
+const Parameter& coloring_seed();
 const Parameter& lemke_max_rows();
 const Parameter& arity();
 

@@ -1,6 +1,9 @@
 #include "solver/group_coloring.h"
 
+#include <algorithm>
 #include <numeric>
+
+#include "solver/counting_sort.h"
 
 namespace cleave {
 
@@ -28,6 +31,13 @@ void GroupColoring::color(int body_count, std::span<const RowGroup> groups) {
     left_.resize(kept);
     first_.push_back(static_cast<int>(groups_.size()));
   }
+}
+
+void GroupColoring::color_by_chance(int body_count, std::span<const RowGroup> groups, std::uint64_t seed) {
+  const std::span<const int> color = vivace_.color(body_count, groups, seed);
+  const int colors = color.empty() ? 0 : 1 + *std::ranges::max_element(color);
+  sort_into_buckets(
+      static_cast<int>(groups.size()), colors, [&](int g) { return color[g]; }, first_, groups_);
 }
 
 }  // namespace cleave

@@ -3,14 +3,17 @@
 // (Fratarcangeli, Tibaldo, Pellacini: Vivace, ACM Transactions on Graphics 35(6), 2016); constraints between the same two
 // bodies, which are adjacent to each other and to the same others, are one node here.
 //
-// Greedy: each group in turn takes the least colour that no group before it on one of its bodies has. A group refused c
+// `greedy`: each group in turn takes the least colour that no group before it on one of its bodies has. A group refused c
 // colours has c neighbours, one of each, so there are at most as many colours as the largest degree plus one.
+// `vivace`: by chance (vivace_coloring.h).
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "solver/prepared_step.h"
+#include "solver/vivace_coloring.h"
 
 namespace cleave {
 
@@ -18,6 +21,7 @@ class GroupColoring {
  public:
   // groups: of bodies 0 .. body_count - 1. Depends on these alone; buffers are kept.
   void color(int body_count, std::span<const RowGroup> groups);
+  void color_by_chance(int body_count, std::span<const RowGroup> groups, std::uint64_t seed);
 
   int color_count() const { return static_cast<int>(first_.size()) - 1; }
   // The groups of a colour, ascending.
@@ -30,6 +34,7 @@ class GroupColoring {
   std::vector<int> groups_;       // by colour
   // Scratch: groups without a colour yet; of each body, the last colour that a group of it has.
   std::vector<int> left_, last_color_;
+  VivaceColoring vivace_;
 };
 
 }  // namespace cleave

@@ -33,7 +33,7 @@ constexpr std::string_view kLate[] = {"partition_seed",  "trials",      "karger_
 
 // Behind them came other columns too.
 constexpr std::string_view kNewest = "restart";
-constexpr std::string_view kBehindBodyOrder[] = {"until", "order", "order_seed"};
+constexpr std::string_view kBehindBodyOrder[] = {"until", "order", "order_seed", "coloring", "coloring_seed"};
 
 // 0 for all that are not late.
 std::ptrdiff_t late_rank(const std::string& column) {

@@ -1,6 +1,6 @@
 // Groups of rows that share no dynamic body within a colour (group_coloring.h), visited by projected Gauss-Seidel on several
 // threads: colour after colour, those of one colour side by side. In whichever order threads come to them, bytes are the same.
-// Fratarcangeli, Tibaldo, Pellacini: Vivace, ACM Transactions on Graphics 35(6), 2016, section 4, but for the colouring.
+// Fratarcangeli, Tibaldo, Pellacini: Vivace, ACM Transactions on Graphics 35(6), 2016, section 4.
 #pragma once
 
 #include <algorithm>
@@ -20,6 +20,11 @@ class ColoredGroups {
   void color(int body_count, std::span<const RowGroup> groups) {
     groups_ = groups;
     coloring_.color(body_count, groups);
+  }
+
+  void color_by_chance(int body_count, std::span<const RowGroup> groups, std::uint64_t seed) {
+    groups_ = groups;
+    coloring_.color_by_chance(body_count, groups, seed);
   }
 
   // Every row of the groups once.

@@ -10,14 +10,24 @@ namespace {
 class PgsColored : public SweepingBaseline {
  public:
   PgsColored(const SolveOptions& options, const Settings& settings)
-      : SweepingBaseline("pgs-colored", options, settings) {}
+      : SweepingBaseline("pgs-colored", options, settings),
+        by_chance_(settings.text("coloring") == "vivace"),
+        seed_(settings.integer("coloring-seed")) {}
 
  private:
-  void begin(const PreparedStep& step) override { groups_.color(step.body_count(), step.groups()); }
+  void begin(const PreparedStep& step) override {
+    if (by_chance_) {
+      groups_.color_by_chance(step.body_count(), step.groups(), seed_);
+    } else {
+      groups_.color(step.body_count(), step.groups());
+    }
+  }
   void sweep(const PreparedStep& step, Solution& solution) override {
     groups_.sweep(step, tasks(), solution);
   }
 
+  bool by_chance_;
+  int seed_;
   ColoredGroups groups_;
 };
 

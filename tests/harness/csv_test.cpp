@@ -52,7 +52,7 @@ TEST(Csv, LaterColumnsStandAtTheEnd) {
       "session,factor_reuses,cg_iterations,factor_mflop_done,partition_seed,trials,karger_method,ufactor,"
       "scotch_strategy,effort,patience,merge_small,split,calibration,cost_kernel,cost_threads,lemke_max_rows,"
       "repartition,partition_origin,auto_choice,friction_beyond_share,"
-      "restart,body_order,until,order,order_seed,"
+      "restart,body_order,until,order,order_seed,coloring,coloring_seed,"
       "model,model_rows_left_out,model_rows_at_rest,model_rows_returned,model_passes\n"));
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "solver/group_coloring.h"
@@ -76,6 +77,55 @@ TEST(GroupColoringTest, IsValidGreedyAndSmallOnRandomGraphs) {
   }
 }
 
+void expect_valid(const GroupColoring& coloring, const std::vector<RowGroup>& groups) {
+  std::vector<int> colors(groups.size(), -1);
+  for (int color = 0; color < coloring.color_count(); ++color) {
+    EXPECT_TRUE(std::ranges::is_sorted(coloring.groups_of(color)));
+    EXPECT_FALSE(coloring.groups_of(color).empty()) << color;
+    for (const int g : coloring.groups_of(color)) EXPECT_EQ(std::exchange(colors[g], color), -1);
+  }
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    EXPECT_GE(colors[g], 0);
+    for (std::size_t k = 0; k < g; ++k)
+      EXPECT_TRUE(colors[g] != colors[k] || !share_body(groups[g], groups[k]));
+  }
+}
+
+TEST(VivaceColoringTest, IsValidAndRepeatsItself) {
+  GroupColoring coloring, again;
+  int unlike = 0;
+  for (int seed = 1; seed <= 300; ++seed) {
+    SCOPED_TRACE(seed);
+    SeededRandom random(seed);
+    const int bodies = random.integer(1, 25);
+    const std::vector<RowGroup> groups = random_groups(random, bodies);
+    coloring.color_by_chance(bodies, groups, seed);
+    expect_valid(coloring, groups);
+    again.color_by_chance(bodies, groups, seed);
+    ASSERT_EQ(again.color_count(), coloring.color_count());
+    for (int color = 0; color < coloring.color_count(); ++color)
+      EXPECT_TRUE(std::ranges::equal(again.groups_of(color), coloring.groups_of(color)));
+    again.color_by_chance(bodies, groups, seed + 1);
+    unlike += again.color_count() != coloring.color_count() ||
+              (coloring.color_count() > 0 && !std::ranges::equal(again.groups_of(0), coloring.groups_of(0)));
+    // A palette is of no more colours than neighbours over kShrinking, and one for each time that all of it was taken: by as many
+    // neighbours.
+    EXPECT_LE(coloring.color_count(), groups.empty() ? 0 : largest_degree(groups) + 1);
+  }
+  EXPECT_GT(unlike, 200);
+}
+
+// Between few bodies that all touch each other no two groups share a colour.
+TEST(VivaceColoringTest, EveryGroupOfOneBodyHasItsOwn) {
+  std::vector<RowGroup> star(9);
+  for (int g = 0; g < 9; ++g) star[g] = {0, g + 1, g, 1};
+  GroupColoring coloring;
+  coloring.color_by_chance(10, star, 3);
+  EXPECT_EQ(coloring.color_count(), 9);
+  coloring.color_by_chance(0, {}, 3);
+  EXPECT_EQ(coloring.color_count(), 0);
+}
+
 Solution solved(const StepProblem& problem, const std::string& solver, int threads) {
   SolveOptions options;
   options.threads = threads;
@@ -90,19 +140,24 @@ TEST(PgsColoredTest, HasTheSameBytesForAnyNumberOfThreads) {
   pile.columns = 12;  // so that a colour is several tasks
   pile.layers = 4;
   const StepProblem problem = make_pile(3, pile);
-  const Solution one = solved(problem, "pgs-colored@sweeps=20", 1);
-  for (const int threads : {2, 3, 7}) {
-    const Solution many = solved(problem, "pgs-colored@sweeps=20", threads);
-    EXPECT_EQ(many.impulse, one.impulse) << threads;
-    EXPECT_EQ(many.velocity, one.velocity) << threads;
+  for (const char* solver : {"pgs-colored@sweeps=20", "pgs-colored@sweeps=20@coloring=vivace"}) {
+    const Solution one = solved(problem, solver, 1);
+    for (const int threads : {2, 3, 7}) {
+      const Solution many = solved(problem, solver, threads);
+      EXPECT_EQ(many.impulse, one.impulse) << solver << threads;
+      EXPECT_EQ(many.velocity, one.velocity) << solver << threads;
+    }
   }
+  EXPECT_NE(solved(problem, "pgs-colored@sweeps=20@coloring=vivace@coloring-seed=2", 1).impulse,
+            solved(problem, "pgs-colored@sweeps=20@coloring=vivace", 1).impulse);
 }
 
 TEST(PgsColoredTest, ComesToTheOracleOnSmallProblems) {
   for (int seed = 1; seed <= 10; ++seed) {
     const StepProblem problem =
         make_small_problem(seed, {.least_cfm = 1e-3, .most_cfm = 1e-2, .mass_ratio = 10});
-    const Solution found = solved(problem, "pgs-colored@sweeps=100000", 2),
+    const char* coloring = seed % 2 == 0 ? "greedy" : "vivace";
+    const Solution found = solved(problem, std::string("pgs-colored@sweeps=100000@coloring=") + coloring, 2),
                    oracle = solved(problem, "dense", 1);
     EXPECT_LE(judge(problem, found.impulse).residual_m_per_s, 1e-6) << seed;
     for (std::size_t i = 0; i < oracle.velocity.size(); ++i)
@@ -112,10 +167,11 @@ TEST(PgsColoredTest, ComesToTheOracleOnSmallProblems) {
 
 TEST(PgsColoredTest, SecondSolveAllocatesNothing) {
   const StepProblem problem = make_pile(7, {.cfm = 1e-1});  // soft: a message is allocated
-  for (const int threads : {1, 2}) {
+  for (const auto& [threads, coloring] : {std::pair{1, "greedy"}, {2, "greedy"}, {2, "vivace"}}) {
     SolveOptions options;
     options.threads = threads;
-    const auto solver = make_step_solver("pgs-colored@sweeps=2000", options);
+    const auto solver =
+        make_step_solver(std::string("pgs-colored@sweeps=2000@coloring=") + coloring, options);
     const Parts parts;
     Solution solution;
     solution.impulse = problem.warm_impulse;
