@@ -10,7 +10,7 @@ from synthetic import ROOT
 
 from cleave_scripts.figures import style, time_to_accuracy
 from cleave_scripts.measurements import partitions_of_solvers
-from cleave_scripts.measurements.accuracy import LIMITS, failures, method_of, problems, profile
+from cleave_scripts.measurements.accuracy import LIMITS, failures, method_of, problems, profile, sweep_costs
 from cleave_scripts.measurements.motion_of_solvers import MOVERS, SCENES
 
 STAND_IN = f"""#!/usr/bin/python3
@@ -70,6 +70,12 @@ class AccuracyTest(unittest.TestCase):
         self.assertEqual(problem.time_ms("schur, mix+fm", LIMITS[0]), 5)
         slow, = problems([row("pgs", 4, 0.5, fastest=0.1)])  # not divided by less than 1
         self.assertEqual(slow.time_ms("pgs", LIMITS[0]), math.inf)
+
+    def test_a_sweep_costs_its_time_over_rows_and_sweeps_of_long_solves(self):
+        long = {**row("pgs@until=0.1@sweeps=300", 2, 0.09), "iterations": "200"}
+        short = {**row("pgs@until=0.1@sweeps=300", 9, 0.09), "iterations": "9"}
+        direct = {**row("exact", 9, 0.09), "iterations": "200"}
+        self.assertEqual(sweep_costs([long, short, direct]), {"pgs": [200]})
 
     def test_no_crossover_where_another_is_faster_at_the_last_limit(self):
         problem, = problems([row("exact", 4, 1e-12), row("schur", 1, 1e-12, "mix"), row("pgs@until=1e-08", 5, 1e-9)])

@@ -1,9 +1,10 @@
 """Speed against accuracy: time to a residual, what a motion becomes, and which parts solvers that iterate want."""
 import math
+import statistics
 
 from cleave_scripts.documents.stored import need
 from cleave_scripts.measurements import partitions_of_solvers as parts_of
-from cleave_scripts.measurements.accuracy import EXACT, problems
+from cleave_scripts.measurements.accuracy import EXACT, LEAST_SWEEPS, problems, sweep_costs
 from cleave_scripts.table import text
 
 COMMAND = "scripts/tradeoff"
@@ -37,6 +38,15 @@ def time_to_accuracy(stored):
             f"it was given; last the largest residual from which on down `{EXACT}` is faster than all of them "
             f"(`{COMMAND}`; {stored.origin(TIMES[0])}):\n\n" +
             text.table(["", f"`{EXACT}`, ms", *map(_power, SHOWN), "`exact` faster from"], lines))
+
+
+def sweep_cost(stored):
+    """What a sweep costs each solver that iterates."""
+    found = sweep_costs(need(stored.table(*TIMES), "solvers that iterate", "iterations"))
+    lines = [[f"`{solver}`", len(costs), *(text.number(cost) for cost in (statistics.median(costs), min(costs), max(costs)))]
+             for solver, costs in found.items()]
+    return (f"ns a row and sweep or iteration, one thread, of the solves of at least {LEAST_SWEEPS} sweeps, looks at the residual and preparation "
+            f"included (`{COMMAND}`; {stored.origin(TIMES[0])}):\n\n" + text.table(["", "solves", "median", "least", "most"], lines))
 
 
 def _last_of(rows):
@@ -78,4 +88,4 @@ def iterative_partitions(stored):
             f"\n\nRank correlation of the partitions' times between solvers: {agreed}.")
 
 
-BLOCKS = {"time_to_accuracy": time_to_accuracy, "motion": motion, "iterative_partitions": iterative_partitions}
+BLOCKS = {"time_to_accuracy": time_to_accuracy, "sweep_cost": sweep_cost, "motion": motion, "iterative_partitions": iterative_partitions}

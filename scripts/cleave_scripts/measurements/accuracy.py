@@ -10,6 +10,7 @@ import math
 KEY = ("scene", "bodies", "cfm", "step")
 LIMITS = tuple(10.0**-power for power in range(1, 9))
 EXACT = "exact"
+LEAST_SWEEPS = 100
 BUDGET = ("until", "sweeps")  # parameters that say how long to go on, not what is done
 
 
@@ -52,6 +53,16 @@ def _relative_residual(row):
 
 def _total_ms(row):
     return float(row["t_s_ms"]) + (0 if row["partitioner"] == "-" else float(row["t_pr_ms"]))
+
+
+def sweep_costs(rows):
+    """{solver that iterates: [ns a row and sweep]} of its solves of at least LEAST_SWEEPS sweeps, beside which preparation counts for little."""
+    found = {}
+    for row in rows:
+        sweeps = int(row["iterations"])
+        if "@until=" in row["solver"] and sweeps >= LEAST_SWEEPS:
+            found.setdefault(method_of({**row, "partitioner": "-"}), []).append(1e6 * float(row["t_s_ms"]) / sweeps / int(row["rows"]))
+    return found
 
 
 def problems(rows):
