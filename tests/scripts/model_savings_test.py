@@ -1,0 +1,66 @@
+"""scripts/model_savings: what is made of its rows, and the command with a stand-in for the program."""
+import csv
+import unittest
+
+from stand_in import StandInCase
+from synthetic import ROOT
+
+from cleave_scripts.measurements.model_savings import CASES, savings
+
+STAND_IN = f"""#!/usr/bin/python3
+import os, pathlib, sys
+sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+from synthetic import write_steps
+words = sys.argv[1:]
+given = dict(zip(words, words[1:]))
+with open(os.environ["STAND_IN_LOG"], "a") as log:
+    log.write(" ".join(words) + "\\n")
+write_steps(pathlib.Path(given["--out"]), [
+    dict(seed=1, scene=given["--scene"], bodies=9, mu=given.get("--mu", 0.5), step=step, rows=60 * step, model=given["--model"], model_rows_left_out=6,
+         model_rows_at_rest=3, model_rows_returned=0, model_passes=1, velocity_spread_m_per_s=1e-12, t_s_ms=4, status="ok")
+    for step in range(3)])
+"""
+
+
+def row(model, step, t_s_ms, left_out=0, spread=0.0, rows=100):
+    return {"scene": "s", "bodies": "9", "mu": "0.5", "model": model, "step": str(step), "rows": str(rows), "t_s_ms": str(t_s_ms),
+            "model_rows_left_out": str(left_out), "model_rows_at_rest": "10", "model_rows_returned": "1", "velocity_spread_m_per_s": str(spread)}
+
+
+class SavingsTest(unittest.TestCase):
+
+    def test_ratios_are_of_medians_over_rounds_and_shares_of_all_rows(self):
+        rows = [row("full", 1, ms) for ms in (1, 2, 90)] + [row("full", 2, 4)]
+        rows += [row("auto", 1, ms, 20, 1e-12) for ms in (0.5, 1, 70)] + [row("auto", 2, 8, 0, 3e-11)]
+        found, = savings(rows).values()
+        self.assertEqual((found.full_ms, found.ratio, found.least, found.most), (3, 9 / 6, 0.5, 2))
+        self.assertEqual((found.left_out, found.at_rest, found.returned), (60 / 400, 0.1, 0.01))
+        self.assertEqual(found.largest_difference_m_per_s, 3e-11)
+
+    def test_scenes_and_friction_are_told_apart(self):
+        rows = [row("full", 1, 2), row("auto", 1, 2)]
+        self.assertEqual(len(savings(rows + [{**line, "mu": "0"} for line in rows])), 2)
+
+
+class ModelSavingsTest(StandInCase):
+    stand_in = STAND_IN
+    script = "model_savings"
+
+    def test_every_scene_with_both_models_in_turn(self):
+        self.run_it("--steps", 100, "--rounds", 2)
+        calls = self.calls()
+        self.assertEqual(len(calls), 2 * len(CASES) * 2)
+        self.assertIn("--measure-every 2 --model full", calls[0])
+        self.assertIn("--model auto", calls[1])
+        with open(self.directory / "out" / "model_savings.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), len(calls) * 2)  # the first step has no constraint
+        self.assertEqual(len(savings(rows)), len(CASES))
+        self.assertEqual({line["round"] for line in rows}, {"1", "2"})
+
+    def test_options(self):
+        self.check_refused((("--rounds", 0), "--rounds is '0'"), (("--steps", 0), "--steps is '0'"))
+
+
+if __name__ == "__main__":
+    unittest.main()
