@@ -4,6 +4,7 @@
 //     DIR/cells/NAME                        the output directory of a cell
 //     DIR/failed/NAME.log                   of a cell whose process did not come to its end: why, and what it printed last
 //     DIR/shards/2of4/                      spec.toml, index.csv and checksums of the second of four shares
+//     DIR/slurm/                            job files and what they printed, of scripts/slurm/submit
 //
 // What is done is known by the directories of the cells alone. The index is written when the campaign begins, every few seconds
 // and when it ends, and spares a resumed campaign the reading of every manifest.
@@ -30,6 +31,8 @@ struct SweepOptions {
   double cell_seconds = std::numeric_limits<double>::infinity();
   double cell_memory_gb = std::numeric_limits<double>::quiet_NaN();  // NaN: no limit
   bool force = false, keep_failed = false, quiet = false;
+  bool take_over = false;  // locks that another host left and nobody holds
+  bool merge = false;      // run nothing: one index of what is there
 };
 
 // What a spec says, before anything is looked at in the directory.

@@ -57,6 +57,7 @@ class Sweep {
         progress_("campaign") {
     for (const IndexRow& row : campaign.rows()) row.is_pending() ? ++pending_ : ++summary_.kept;
     done_ = summary_.kept;
+    if (options.merge) next_ = campaign.cells().size();
     for (int slot = options.jobs - 1; slot >= 0; --slot) free_slots_.push_back(slot);
   }
 
@@ -100,6 +101,7 @@ class Sweep {
       take(place, *done);
       return;
     }
+    if (options_.take_over) unlock(directory);
     CellCommand command{{options_.program, "run"}, options_.cell_memory_gb, cores_of(free_slots_.back())};
     for (const std::string& word : campaign_.cells()[place].arguments()) command.words.push_back(word);
     command.words.push_back("--out=" + directory.string());
@@ -113,10 +115,11 @@ class Sweep {
   }
 
   // A run that was killed after its last file and before its lock is complete, and the file of the lock is not of it.
-  static void unlock(const fs::path& directory) {
+  void unlock(const fs::path& directory) const {
     if (!fs::exists(directory / kLockFile) || is_run_elsewhere(directory)) return;
     try {
-      const DirectoryLock lock(directory, "cleave sweep");
+      const DirectoryLock lock(directory, "cleave sweep",
+                               options_.take_over ? LeftElsewhere::take_over : LeftElsewhere::refuse);
     } catch (const std::invalid_argument& of_another_host) {
       say(of_another_host.what());
     }

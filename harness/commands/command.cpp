@@ -12,6 +12,7 @@ std::span<const Command> commands() {
        declare_sweep},
       {"rerun", "repeat a run from its manifest and hold its rows against those it left", declare_rerun},
       {"export", "write the body graph or a matrix of a recorded problem for other programs", declare_export},
+      {"import", "make a problem file of a problem that another program wrote", declare_import},
       {"collect", "put the rows of many output directories into one table", declare_collect},
       {"compare", "hold the times of two campaigns against each other, cell by cell", declare_compare},
       {"calibrate", "fit the cost model of partitions to this machine", declare_calibrate},

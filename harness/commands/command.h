@@ -37,6 +37,7 @@ std::function<int()> declare_replay(CLI::App& app, const std::vector<std::string
 std::function<int()> declare_sweep(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_rerun(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_export(CLI::App& app, const std::vector<std::string>& argv);
+std::function<int()> declare_import(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_calibrate(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_collect(CLI::App& app, const std::vector<std::string>& argv);
 std::function<int()> declare_compare(CLI::App& app, const std::vector<std::string>& argv);

@@ -2,7 +2,7 @@
 //
 // Rows of A and B belong together where all columns of --by and the step are equal; several of one step (rounds) count by their
 // median. A line is a group of --by: the ratio of the medians over the steps that both solved, B over A, and its bootstrap
-// interval. A regression is a group whose whole interval lies above 1 + --allow, or that solved a step in A which B did not.
+// interval. Times of two processors are in no group of one campaign: `machine` in --by keeps them apart. A regression is a group whose whole interval lies above 1 + --allow, or that solved a step in A which B did not.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -39,13 +39,32 @@ struct StepValues {
   bool solved = false;
   std::string solution_hash;
 };
-using Group = std::map<Texts, StepValues>;  // by seed and step
-using Campaign = std::map<Texts, Group>;    // by the columns of --by
+struct Group {
+  std::map<Texts, StepValues> steps;  // by seed and step
+  std::string machine;                // processor of its first row
+};
+struct Campaign {
+  std::map<Texts, Group> groups;  // by the columns of --by
+  int incomplete = 0;             // cells that were killed, or are not at their end
+};
+
+// Of --by, beside the columns of steps.csv: as in the tables of cleave collect.
+constexpr const char* kMachine = "machine";
+constexpr int kMachinePlace = -1;
 
 int place_of(const std::string& option, const std::string& name) {
   static const std::vector<Column> all = columns();
   check_name(option, name, names_of(std::span(all)));
   return static_cast<int>(std::ranges::find(all, name, &Column::name) - all.begin());
+}
+
+int place_in_by(const std::string& name) { return name == kMachine ? kMachinePlace : place_of("--by", name); }
+
+// A median over times of two processors is of neither.
+void check_machine(const std::string& directory, const std::string& known, const std::string& machine) {
+  if (known == machine) return;
+  throw std::invalid_argument(directory + ": a group of --by was measured on '" + known + "' and on '" +
+                              machine + "', whose times have no common median; add machine to --by");
 }
 
 // NaN for what was not measured, which a column of integers says with -1.
@@ -58,19 +77,26 @@ double number_in(const MeasuredRow& row, int place) {
 Campaign read_campaign(const std::string& directory, const std::vector<int>& by, int column) {
   static const int seed = place_of("", "seed"), step = place_of("", "step"), status = place_of("", "status"),
                    hash = place_of("", "solution_hash");
+  const bool is_of_machine = columns()[static_cast<std::size_t>(column)].machine;
   Campaign campaign;
-  for (const MeasuredCell& cell : find_measured_cells(std::span(&directory, 1)))
-    visit_rows(cell, [&](const MeasuredRow& row) {
-      const Texts& cells = row.cells;
-      Texts key;
-      for (const int place : by) key.push_back(cells[place]);
-      StepValues& found = campaign[key][{cells[seed], cells[step]}];
-      if (cells[status] != "ok") return;
-      found.solved = true;
-      found.solution_hash = cells[hash];
-      const double value = number_in(row, column);
-      if (std::isfinite(value)) found.values.push_back(value);
-    });
+  const auto add = [&](const MeasuredRow& row, const std::string& machine) {
+    const Texts& cells = row.cells;
+    Texts key;
+    for (const int place : by) key.push_back(place == kMachinePlace ? machine : cells[place]);
+    Group& group = campaign.groups.try_emplace(key, Group{{}, machine}).first->second;
+    if (is_of_machine) check_machine(directory, group.machine, machine);
+    StepValues& found = group.steps[{cells[seed], cells[step]}];
+    if (cells[status] != "ok") return;
+    found.solved = true;
+    found.solution_hash = cells[hash];
+    const double value = number_in(row, column);
+    if (std::isfinite(value)) found.values.push_back(value);
+  };
+  visit_cells(find_measured_cells(std::span(&directory, 1)), [&](const MeasuredCell& cell,
+                                                                 const StoredManifest& manifest) {
+    const bool whole = visit_rows(cell, [&](const MeasuredRow& row) { add(row, manifest.cpu_model); });
+    campaign.incomplete += !whole || manifest.state != "complete";
+  });
   return campaign;
 }
 
@@ -83,9 +109,9 @@ struct Comparison {
 
 Comparison compared(const Group& a, const Group& b) {
   Comparison result;
-  for (const auto& [step, of_a] : a) {
-    const auto found = b.find(step);
-    if (!of_a.solved || found == b.end()) continue;
+  for (const auto& [step, of_a] : a.steps) {
+    const auto found = b.steps.find(step);
+    if (!of_a.solved || found == b.steps.end()) continue;
     const StepValues& of_b = found->second;
     result.lost += !of_b.solved;
     if (!of_b.solved) continue;
@@ -129,37 +155,61 @@ bool print_group(const Texts& key, const Comparison& group, double allow) {
   return group.lost > 0 || interval.low > 1 + allow;
 }
 
+std::vector<int> read_by(const std::string& text) {
+  std::vector<int> by;
+  const Texts names = split_list(text);
+  for (const std::string& name : names) {
+    by.push_back(place_in_by(name));
+    if (std::ranges::count(names, name) > 1)
+      throw std::invalid_argument("--by: " + name + " is given twice; name every column once");
+  }
+  return by;
+}
+
+int read_column(const std::string& name) {
+  const int column = place_of("--column", name);
+  if (std::string_view(columns()[column].type) == "text")
+    throw std::invalid_argument("--column: " + name + " holds text; allowed is a column of numbers");
+  return column;
+}
+
+// What the lines do not show.
+std::string remarks(const Campaign& a, const Campaign& b, int machines) {
+  std::string text;
+  if (machines > 0) text += ", " + std::to_string(machines) + " groups on another processor in B";
+  for (const auto& [campaign, name] : {std::pair(&a, " of A"), std::pair(&b, " of B")})
+    if (campaign->incomplete > 0)
+      text += "; " + std::to_string(campaign->incomplete) + " output directories" + name + " are incomplete";
+  return text;
+}
+
 int compare(const CompareOptions& options) {
   if (options.a.empty() || options.b.empty())
     throw std::invalid_argument("A, B: two directories with output directories are required");
   const double allow = parse_number("--allow", options.allow, {0, 1e6});
-  const int column = place_of("--column", options.column);
-  if (std::string_view(columns()[column].type) == "text")
-    throw std::invalid_argument("--column: " + options.column +
-                                " holds text; allowed is a column of numbers");
-  std::vector<int> by;
-  const Texts names = split_list(options.by);
-  for (const std::string& name : names) {
-    by.push_back(place_of("--by", name));
-    if (std::ranges::count(names, name) > 1)
-      throw std::invalid_argument("--by: " + name + " is given twice; name every column once");
-  }
+  const int column = read_column(options.column);
+  const std::vector<int> by = read_by(options.by);
   const Campaign a = read_campaign(options.a, by, column), b = read_campaign(options.b, by, column);
-  if (std::ranges::none_of(a, [&](const auto& entry) { return b.contains(entry.first); }))
+  const auto is_in = [](const Campaign& campaign) {
+    return [&campaign](const auto& entry) { return campaign.groups.contains(entry.first); };
+  };
+  if (std::ranges::none_of(a.groups, is_in(b)))
     throw std::invalid_argument("--by: no group of " + options.by + " is in both; name fewer columns");
-  std::printf("%s,steps,lost,other_solutions,a,b,ratio,low,high,verdict\n", joined(names, ",").c_str());
-  int groups = 0, regressions = 0;
-  for (const auto& [key, group] : a) {
-    if (!b.contains(key)) continue;
+  std::printf("%s,steps,lost,other_solutions,a,b,ratio,low,high,verdict\n",
+              joined(split_list(options.by), ",").c_str());
+  int groups = 0, regressions = 0, machines = 0;
+  for (const auto& [key, group] : a.groups) {
+    if (!b.groups.contains(key)) continue;
     ++groups;
-    regressions += print_group(key, compared(group, b.at(key)), allow);
+    machines += group.machine != b.groups.at(key).machine;
+    regressions += print_group(key, compared(group, b.groups.at(key)), allow);
   }
   std::fflush(stdout);
-  const auto only = [](const Campaign& one, const Campaign& other) {
-    return std::ranges::count_if(one, [&](const auto& entry) { return !other.contains(entry.first); });
+  const auto alone = [&](const Campaign& one, const Campaign& other) {
+    return std::to_string(std::ssize(one.groups) - std::ranges::count_if(one.groups, is_in(other)));
   };
-  say(std::to_string(groups) + " groups in both, " + std::to_string(only(a, b)) + " in A alone, " +
-      std::to_string(only(b, a)) + " in B alone; " + std::to_string(regressions) + " regressions");
+  say(std::to_string(groups) + " groups in both, " + alone(a, b) + " in A alone, " + alone(b, a) +
+      " in B alone; " + std::to_string(regressions) + " regressions" + remarks(a, b, machines));
   return regressions > 0 ? kExitVerifyFailed : kExitOk;
 }
 
@@ -169,7 +219,7 @@ std::function<int()> declare_compare(CLI::App& app, const std::vector<std::strin
   const auto options = std::make_shared<CompareOptions>();
   app.add_option("a", options->a, "output directory, or directory that holds such")->type_name("A");
   app.add_option("b", options->b, "the other")->type_name("B");
-  app.add_option("--by", options->by, "columns that rows of a group have in common")
+  app.add_option("--by", options->by, "columns that rows of a group have in common, and machine")
       ->type_name("COLUMNS")
       ->capture_default_str();
   app.add_option("--column", options->column, "what is compared")->type_name("NAME")->capture_default_str();

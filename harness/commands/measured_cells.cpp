@@ -1,6 +1,7 @@
 #include "harness/commands/measured_cells.h"
 
 #include <algorithm>
+#include <exception>
 #include <fstream>
 #include <set>
 #include <stdexcept>
@@ -30,6 +31,24 @@ std::vector<fs::path> cells_below(const fs::path& root) {
   return found;
 }
 
+struct ReadManifest {
+  StoredManifest manifest;
+  std::exception_ptr error;
+};
+
+std::vector<ReadManifest> read_manifests(std::span<const MeasuredCell> cells) {
+  std::vector<ReadManifest> read(cells.size());
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    try {
+      read[k].manifest = read_manifest(cells[k].directory / kManifestFile);
+    } catch (...) {
+      read[k].error = std::current_exception();
+    }
+  }
+  return read;
+}
+
 }  // namespace
 
 std::vector<MeasuredCell> find_measured_cells(std::span<const std::string> directories) {
@@ -43,10 +62,23 @@ std::vector<MeasuredCell> find_measured_cells(std::span<const std::string> direc
     for (const fs::path& directory : found) {
       if (!known.insert(fs::canonical(directory)).second)
         throw std::invalid_argument(directory.string() + ": is asked for twice");
-      cells.push_back({directory.string(), directory, read_manifest(directory / kManifestFile)});
+      cells.push_back({directory.string(), directory});
     }
   }
   return cells;
+}
+
+void visit_cells(std::span<const MeasuredCell> cells,
+                 const std::function<void(const MeasuredCell& cell, const StoredManifest& manifest)>& visit) {
+  constexpr std::size_t kAtATime = 256;
+  for (std::size_t first = 0; first < cells.size(); first += kAtATime) {
+    const std::span<const MeasuredCell> some = cells.subspan(first, std::min(kAtATime, cells.size() - first));
+    const std::vector<ReadManifest> read = read_manifests(some);
+    for (std::size_t k = 0; k < some.size(); ++k) {
+      if (read[k].error) std::rethrow_exception(read[k].error);
+      visit(some[k], read[k].manifest);
+    }
+  }
 }
 
 bool visit_rows(const MeasuredCell& cell, const std::function<void(const MeasuredRow& row)>& visit) {

@@ -14,13 +14,17 @@ namespace cleave {
 struct MeasuredCell {
   std::string name;  // its path, beginning with the directory that was asked for
   std::filesystem::path directory;
-  StoredManifest manifest;
 };
 
 // What tells an output directory: a manifest.json beside a steps.csv. By directory asked for, then by name; links to
 // directories are not followed. Throws std::invalid_argument with one line naming what is wrong: a directory that is none or
-// holds no cell, one that is asked for twice, a manifest that cannot be read.
+// holds no cell, one that is asked for twice.
 std::vector<MeasuredCell> find_measured_cells(std::span<const std::string> directories);
+
+// Calls visit for each, in their order, with its manifest. Manifests are long: they are read on all cores, a few at a time, so that
+// ten thousand take seconds and little memory. Throws what read_manifest does, when the cell's turn comes.
+void visit_cells(std::span<const MeasuredCell> cells,
+                 const std::function<void(const MeasuredCell& cell, const StoredManifest& manifest)>& visit);
 
 struct MeasuredRow {
   std::string line;                // without its end

@@ -5,6 +5,7 @@
 #include "harness/commands/command.h"
 #include "harness/commands/run_command_line.h"
 #include "harness/commands/simulate.h"
+#include "harness/experiment/model_watch.h"
 #include "harness/experiment/options.h"
 #include "harness/files/build_info.h"
 #include "harness/files/json_writer.h"
@@ -40,6 +41,7 @@ int run(const std::map<std::string, std::string>& given, bool print_key,
   }
   std::vector<std::string> files = {"steps.csv"};
   if (options.record_motion) files.push_back("motion.h5");
+  if (options.explain_model) files.push_back(kFindingsFile);
   return simulate("run", argv, options, files);
 }
 

@@ -29,7 +29,7 @@ constexpr Range kPositive{0, std::numeric_limits<double>::infinity(), true};
 // As given; empty: not given.
 struct Given {
   std::string spec, out, jobs = "1", pin = "0", shard = "1/1", cell_seconds, cell_memory_gb;
-  bool dry_run = false, force = false, keep_failed = false, quiet = false;
+  bool dry_run = false, force = false, keep_failed = false, quiet = false, merge = false, take_over = false;
 };
 
 void read_shard(const std::string& text, SweepOptions& options) {
@@ -59,9 +59,19 @@ SweepOptions read_options(const Given& given, const std::string& program) {
   if (!given.cell_memory_gb.empty())
     options.cell_memory_gb = parse_number("--cell-memory-gb", given.cell_memory_gb, kPositive);
   options.force = given.force;
-  options.keep_failed = given.keep_failed;
+  options.keep_failed = given.keep_failed || given.merge;
   options.quiet = given.quiet;
+  options.take_over = given.take_over;
+  options.merge = given.merge;
   return options;
+}
+
+void check_merge(const Given& given, const SweepOptions& options) {
+  if (!given.merge) return;
+  if (options.shards > 1)
+    throw std::invalid_argument("--merge: puts the indexes of all shares into one; leave out --shard");
+  for (const auto& [name, is_given] : {std::pair("--force", given.force), {"--dry-run", given.dry_run}})
+    if (is_given) throw std::invalid_argument(std::string("--merge: runs nothing; leave out ") + name);
 }
 
 // More threads than cores would measure how they wait for each other.
@@ -88,19 +98,25 @@ int pending_of(const Campaign& campaign) {
   return static_cast<int>(std::ranges::count_if(campaign.rows(), &IndexRow::is_pending));
 }
 
-// On stdout a row a cell; on stderr the sum.
-int print_cells(const SweepOptions& options, const Campaign& campaign) {
+// On stdout a row a cell, in a merge a row a cell that is not ok.
+void print_rows(const SweepOptions& options, const Campaign& campaign) {
   const CellTimes times = campaign.times();
   std::printf("number,cell,status,about_s,arguments\n");
   for (std::size_t k = 0; k < campaign.cells().size(); ++k) {
     const IndexRow& row = campaign.rows()[k];
+    if (options.merge && row.status == to_string(SolveStatus::ok)) continue;
     const std::optional<double> seconds = row.is_pending() ? times.of(campaign.cells()[k]) : 0;
     std::printf("%d,%s,%s,%s,%s\n", row.number, row.cell.c_str(), row.status.c_str(),
                 seconds ? number_text(*seconds).c_str() : "nan", csv_cell(row.arguments).c_str());
   }
+}
+
+// All of them; on stderr the sum.
+int print_cells(const SweepOptions& options, const Campaign& campaign) {
+  print_rows(options, campaign);
   const int pending = pending_of(campaign), all = static_cast<int>(campaign.cells().size());
   say(std::to_string(all) + " cells: " + std::to_string(all - pending) + " done, " + std::to_string(pending) +
-      " to do" + about(campaign.seconds_left(times, options.jobs)));
+      " to do" + about(campaign.seconds_left(campaign.times(), options.jobs)));
   return kExitOk;
 }
 
@@ -131,6 +147,10 @@ int conclude(const SweepOptions& options, const Campaign& campaign, const SweepS
   text += " " + std::to_string(summary.kept) + " kept";
   if (summary.elsewhere > 0) text += ", " + std::to_string(summary.elsewhere) + " run by another process";
   if (!options.quiet) say(text);
+  if (options.merge) {
+    print_rows(options, campaign);
+    return not_ok > 0 || pending_of(campaign) > 0 ? kExitCellsFailed : kExitOk;
+  }
   if (!summary.interrupted) return not_ok > 0 ? kExitCellsFailed : kExitOk;
   say("interrupted; the same command goes on");
   return kExitInterrupted;
@@ -142,12 +162,14 @@ int sweep(const Given& given, const std::string& program) {
   spec.cells = parse_campaign(spec.text, options.spec);
   check_threads(options, spec);
   check_shard(options, spec);
+  check_merge(given, options);
   const fs::path share = share_directory(options.out, options.shard, options.shards);
   check_campaign_directory(options.out);
   if (given.dry_run) return print_cells(options, Campaign(options, spec));
   check_output_directory(share.string(), true, {});
   create_output_directory(share.string());
-  const DirectoryLock lock(share, "cleave sweep");
+  const DirectoryLock lock(share, "cleave sweep",
+                           options.take_over ? LeftElsewhere::take_over : LeftElsewhere::refuse);
   Campaign campaign(options, spec);
   if (!options.quiet) say_what_is_kept(campaign);
   const SweepSummary summary = run_campaign(options, spec.text, campaign);
@@ -171,6 +193,11 @@ std::function<int()> declare_sweep(CLI::App& app, const std::vector<std::string>
   add("--pin", given->pin, "N", "cores of a cell, no two cells on one (0: bound to none)");
   add("--shard", given->shard, "i/n",
       "run every n-th cell, from the i-th on; several may share a directory (1/1)");
+  app.add_flag("--merge", given->merge,
+               "run nothing; put what all shares did into one index and print the cells that are not ok");
+  app.add_flag(
+      "--take-over", given->take_over,
+      "take over locks that another host left and nobody holds, as its processes are known to have ended");
   add("--cell-seconds", given->cell_seconds, "S", "longest that a cell may take, s, in (0, inf)");
   add("--cell-memory-gb", given->cell_memory_gb, "X",
       "most address space of a cell, GB (1e9 bytes), in (0, inf)");

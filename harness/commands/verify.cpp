@@ -1,10 +1,18 @@
-// cleave verify: checks what is stored from the files alone.
+// cleave verify: checks what is stored from the files alone; with --rerun some of the runs are repeated too.
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
+#include "harness/base/numbers.h"
+#include "harness/commands/collected_tables.h"
 #include "harness/commands/command.h"
+#include "harness/commands/measured_cells.h"
+#include "harness/commands/repeated_run.h"
 #include "harness/commands/verify_checks.h"
 #include "harness/commands/verify_directory.h"
 
@@ -14,13 +22,54 @@ namespace {
 namespace fs = std::filesystem;
 
 void verify_file(const fs::path& path, CheckList& list) {
+  if (path.extension() == ".csv") return check_collected_tables(path, list);
   check_problem_file(path, read_problem_file_aloud(path), list);
 }
 
-int verify(const std::vector<std::string>& paths) {
-  if (paths.empty()) throw std::invalid_argument("PATHS: problem files or output directories are required");
+struct VerifyOptions {
+  std::vector<std::string> paths;
+  std::string rerun;  // as given; empty: none
+};
+
+struct CompleteRun {
+  fs::path directory;
+  int other_threads;  // than it had
+};
+
+// Complete runs below a directory, at most so many, evenly spread over their names: in a campaign these are fingerprints of
+// options, so that which are taken is as good as chance and always the same.
+std::vector<CompleteRun> sample_of_runs(const std::string& path, int most) {
+  std::vector<CompleteRun> runs;
+  visit_cells(find_measured_cells(std::span(&path, 1)),
+              [&runs](const MeasuredCell& cell, const StoredManifest& manifest) {
+                if (manifest.command == "run" && manifest.state == "complete")
+                  runs.push_back({cell.directory, manifest.option("threads") == "1" ? 2 : 1});
+              });
+  if (runs.empty()) throw std::invalid_argument("--rerun: " + path + " holds no run that came to its end");
+  const std::size_t count = std::min(runs.size(), static_cast<std::size_t>(most));
+  std::vector<CompleteRun> sample;
+  for (std::size_t k = 0; k < count; ++k) sample.push_back(runs[k * runs.size() / count]);
+  return sample;
+}
+
+// With the threads it had, and with another number of them. False where it was interrupted.
+bool rerun_sample(const std::string& program, const std::vector<CompleteRun>& sample, CheckList& list) {
+  for (const CompleteRun& run : sample)
+    for (const std::optional<int> threads : {std::optional<int>{}, std::optional<int>{run.other_threads}})
+      if (!check_repeated_run({program, run.directory, {}, threads}, list)) return false;
+  return true;
+}
+
+int verify(const VerifyOptions& options, const std::string& program) {
+  if (options.paths.empty())
+    throw std::invalid_argument("PATHS: problem files, output directories or collected tables are required");
+  std::vector<std::vector<CompleteRun>> samples;
+  if (!options.rerun.empty()) {
+    const int most = parse_integer("--rerun", options.rerun, {1, std::numeric_limits<int>::max()});
+    for (const std::string& path : options.paths) samples.push_back(sample_of_runs(path, most));
+  }
   CheckList list;
-  for (const std::string& path : paths) {
+  for (const std::string& path : options.paths) {
     std::error_code none;  // what cannot be looked at is no directory, and reading it says why
     if (fs::is_directory(path, none)) {
       verify_directory(path, list);
@@ -28,6 +77,8 @@ int verify(const std::vector<std::string>& paths) {
       verify_file(path, list);
     }
   }
+  for (const std::vector<CompleteRun>& sample : samples)
+    if (!rerun_sample(program, sample, list)) return kExitInterrupted;
   std::fflush(stdout);
   std::fprintf(stderr, "%d checks, %d failed\n", list.checks(), list.failures());
   return list.failures() == 0 ? kExitOk : kExitVerifyFailed;
@@ -35,11 +86,15 @@ int verify(const std::vector<std::string>& paths) {
 
 }  // namespace
 
-std::function<int()> declare_verify(CLI::App& app, const std::vector<std::string>&) {
-  const auto paths = std::make_shared<std::vector<std::string>>();
-  app.add_option("paths", *paths, "problem files, or directories that hold them or steps.csv")
+std::function<int()> declare_verify(CLI::App& app, const std::vector<std::string>& argv) {
+  const auto options = std::make_shared<VerifyOptions>();
+  app.add_option("paths", options->paths,
+                 "problem files, directories that hold them or steps.csv, or tables of cleave collect")
       ->type_name("PATHS");
-  return [paths] { return verify(*paths); };
+  app.add_option("--rerun", options->rerun,
+                 "runs of each directory to repeat, with their own number of threads and with another")
+      ->type_name("N");
+  return [options, argv] { return verify(*options, argv.front()); };
 }
 
 }  // namespace cleave

@@ -9,6 +9,7 @@
 #include "harness/base/numbers.h"
 #include "harness/campaign/cell_result.h"
 #include "harness/campaign/spec.h"
+#include "harness/commands/collected_tables.h"
 #include "harness/commands/verify_directory.h"
 #include "harness/files/checksums.h"
 #include "harness/files/directory_lock.h"
@@ -56,7 +57,7 @@ void check_spec(const fs::path& out, const fs::path& share, const std::vector<In
 
 void read_share(const fs::path& out, const fs::path& share, Rows& rows, CheckList& list) {
   const std::vector<std::string> folders =
-      share == out ? std::vector<std::string>{kCellsFolder, kFailedFolder, kShardsFolder}
+      share == out ? std::vector<std::string>{kCellsFolder, kFailedFolder, kShardsFolder, kSlurmFolder}
                    : std::vector<std::string>{};
   if (!check_files(share, {kIndexFile, kSpecFile}, folders, list)) return;
   std::vector<IndexRow> found;
@@ -133,7 +134,7 @@ void check_shares(const fs::path& out, const std::vector<fs::path>& shares, Chec
         others += "; " + name + " has no index";
   if (!fs::exists(out / kIndexFile))
     for (const std::string& name : names_in(out))
-      if (name != kShardsFolder && name != kCellsFolder && name != kFailedFolder)
+      if (name != kShardsFolder && name != kCellsFolder && name != kFailedFolder && name != kSlurmFolder)
         others += "; " + name + " is not of this campaign";
   list.add(others.empty(), out.string(), "holds a campaign and nothing else" + others);
 }
@@ -158,6 +159,8 @@ void verify_campaign(const fs::path& directory, CheckList& list) {
   for (const auto& [cell, of_cell] : rows) check_cell(directory, cell, of_cell, list);
   check_names(directory / kCellsFolder, "", rows, list);
   check_names(directory / kFailedFolder, ".log", rows, list);
+  if (const fs::path merged = directory / kSlurmFolder / kMergedTable; fs::exists(merged))
+    check_collected_tables(merged, list);
 }
 
 }  // namespace cleave

@@ -3,11 +3,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <utility>
 
 #include "harness/base/stopwatch.h"
+#include "harness/experiment/row_subset.h"
 #include "solver/residual.h"
 
 namespace cleave {
@@ -62,16 +62,6 @@ void follow_normal_rows(const StepProblem& problem, std::vector<RowPlan>& plan) 
     const int normal = problem.friction_row[row];
     if (normal >= 0 && plan[normal] != RowPlan::solved) plan[row] = plan[normal];
   }
-}
-
-template <class Value>
-void keep(const std::vector<Value>& values, std::span<const RowPlan> plan, std::vector<Value>& kept,
-          std::size_t width = 1) {
-  kept.clear();
-  if (values.empty()) return;
-  for (std::size_t row = 0; row < plan.size(); ++row)
-    if (plan[row] == RowPlan::solved)
-      kept.insert(kept.end(), values.begin() + row * width, values.begin() + (row + 1) * width);
 }
 
 double velocity_scale(const StepProblem& problem) {
@@ -173,36 +163,10 @@ std::vector<RowPlan> ModelPlanner::plan(const StepProblem& problem) {
 }
 
 void ModelPlanner::reduce(const StepProblem& problem) {
-  const auto keep_rows = [&](const auto& values, auto& kept, std::size_t width = 1) {
-    keep(values, plan_, kept, width);
-  };
-  reduced_.h_s = problem.h_s;
-  reduced_.mass = problem.mass;
-  reduced_.free_velocity = problem.free_velocity;
-  keep_rows(problem.row_body, reduced_.row_body, 2);
-  keep_rows(problem.jacobian, reduced_.jacobian, 12);
-  keep_rows(problem.rhs, reduced_.rhs);
-  keep_rows(problem.compliance, reduced_.compliance);
-  keep_rows(problem.lower, reduced_.lower);
-  keep_rows(problem.upper, reduced_.upper);
-  keep_rows(problem.row_kind, reduced_.row_kind);
-  keep_rows(problem.friction_row, reduced_.friction_row);
-  keep_rows(problem.friction_coefficient, reduced_.friction_coefficient);
-  keep_rows(problem.row_constraint, reduced_.row_constraint);
-  keep_rows(problem.contact_point, reduced_.contact_point, 3);
-  keep_rows(problem.warm_impulse, reduced_.warm_impulse);
-  keep_rows(problem.box_angle_rad, reduced_.box_angle_rad);
-  keep_rows(problem.contact_set, reduced_.contact_set);
-
+  is_solved_.resize(plan_.size());
+  std::ranges::transform(plan_, is_solved_.begin(), [](RowPlan row) { return row == RowPlan::solved; });
+  copy_rows(problem, is_solved_, reduced_, new_row_);
   add_impulses_at_rest(problem, plan_, reduced_.free_velocity);
-  new_row_.assign(plan_.size(), -1);
-  for (int row = 0, next = 0; row < problem.row_count(); ++row)
-    if (plan_[row] == RowPlan::solved) new_row_[row] = next++;
-  for (int& normal : reduced_.friction_row) {
-    if (normal < 0) continue;
-    normal = new_row_[normal];
-    assert(normal >= 0);
-  }
 }
 
 SolveSummary ModelPlanner::solve_pass(StepSolver& solver, const StepProblem& problem, const Parts& parts,
@@ -212,7 +176,7 @@ SolveSummary ModelPlanner::solve_pass(StepSolver& solver, const StepProblem& pro
   // Not the time from the solver's start to its end: that has in it what the solver does for its model of workers.
   Stopwatch watch;
   reduce(problem);
-  keep(solution.impulse, plan_, found_.impulse);
+  keep_rows(solution.impulse, is_solved_, found_.impulse);
   found_.velocity = solution.velocity;
   double own_ms = watch.lap_ms();
   SolveSummary summary = solver.solve(reduced_, parts, found_);

@@ -71,6 +71,7 @@ class ModelPlanner {
 
   RestIslands rest_;
   std::vector<RowPlan> plan_;
+  std::vector<char> is_solved_;  // (m) whether plan_ says so
   StepProblem
       reduced_;  // the rows that are solved, with all bodies; free velocities have the impulses at rest in them
   std::vector<int> new_row_;  // (m) in reduced_

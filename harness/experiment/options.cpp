@@ -270,6 +270,7 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given,
     exclude(given, "advance",
             "has a meaning only in lockstep: in --mode separate every combination advances its world");
     exclude(given, "record-motion", "records one world; --mode separate has one per combination");
+    exclude(given, "explain-model", "watches one world; --mode separate has one per combination");
   }
   if (options.steps > 0 && options.measure_every > options.steps)
     reject("measure-every", std::to_string(options.measure_every) + " measures none of --steps " +

@@ -56,6 +56,7 @@ struct RunOptions {
   std::string out;
   bool force = false;
   bool record_motion = false;
+  bool explain_model = false;
 
   ExtractOptions extract;
   double stiffness_n_per_m = std::numeric_limits<double>::quiet_NaN();  // NaN: erp and cfm were given instead

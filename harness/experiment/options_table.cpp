@@ -203,6 +203,9 @@ std::vector<OptionSpec> experiment_options() {
       flag({"record-motion", kAbout, kRunOnly, kChangesNoRow},
            "write bodies, graph and parts of every step to motion.h5, for pictures and the viewer",
            at(&RunOptions::record_motion)),
+      flag({"explain-model", kAbout, kRunOnly, kChangesNoRow},
+           "write to explain_model.csv, and say, what was modelled and never mattered, and what it cost",
+           at(&RunOptions::explain_model)),
   };
 }
 

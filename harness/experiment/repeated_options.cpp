@@ -71,7 +71,7 @@ void drop_replaced(const Given& given, Given& stored) {
   if (given.contains("solver")) drop(stored, {"strategy", "kernel"});
   if (given.contains("refiner")) drop(stored, {"objective"});
   if (value_of(given.contains("mode") ? given : stored, "mode") == "separate")
-    drop(stored, {"advance", "record-motion"});
+    drop(stored, {"advance", "record-motion", "explain-model"});
 }
 
 bool is_another_scene(const Given& given, const Given& stored) {

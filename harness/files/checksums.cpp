@@ -64,18 +64,31 @@ std::string sha256_of(const fs::path& path) {
   return sum.digits();
 }
 
+std::string sha256_of_bytes(std::string_view bytes) {
+  Sha256 sum;
+  sum.add(bytes.data(), bytes.size());
+  return sum.digits();
+}
+
+std::string checksum_line(const std::string& digits, const std::string& name) {
+  return digits + "  " + name + "\n";
+}
+
 void write_checksums(const fs::path& directory, const std::vector<std::string>& names) {
   std::string lines;
   for (const std::string& name : names) {
     if (name == kChecksumsFile || !fs::exists(directory / name)) continue;
     sync_file(directory / name);  // or a directory that looks finished may not be, after the power fails
-    lines += sha256_of(directory / name) + "  " + name + "\n";
+    lines += checksum_line(sha256_of(directory / name), name);
   }
   write_whole_file(directory / kChecksumsFile, lines);
 }
 
 std::map<std::string, std::string> read_checksums(const fs::path& directory) {
-  const fs::path path = directory / kChecksumsFile;
+  return read_checksum_list(directory / kChecksumsFile);
+}
+
+std::map<std::string, std::string> read_checksum_list(const fs::path& path) {
   const std::optional<std::string> all = file_text(path);
   if (!all || all->empty()) throw std::invalid_argument(path.string() + ": cannot be read or is empty");
   std::map<std::string, std::string> sums;

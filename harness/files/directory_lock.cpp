@@ -80,11 +80,12 @@ std::string who(const Owner& owner) {
 
 }  // namespace
 
-DirectoryLock::DirectoryLock(const fs::path& directory, const std::string& command)
+DirectoryLock::DirectoryLock(const fs::path& directory, const std::string& command,
+                             LeftElsewhere left_elsewhere)
     : path_(directory / kLockFile) {
   try {
     while (!open_and_lock()) continue;
-    take_over_or_refuse();
+    take_over_or_refuse(left_elsewhere);
     write_owner(command);
   } catch (...) {
     if (file_ >= 0) ::close(file_);
@@ -114,10 +115,10 @@ bool DirectoryLock::open_and_lock() {
   return false;
 }
 
-void DirectoryLock::take_over_or_refuse() const {
+void DirectoryLock::take_over_or_refuse(LeftElsewhere left_elsewhere) const {
   const Owner owner = read_owner(file_);
   if (owner.pid.empty()) return;
-  if (owner.host != host_name())
+  if (owner.host != host_name() && left_elsewhere == LeftElsewhere::refuse)
     throw std::invalid_argument(
         "--out: " + path_.string() + " was left by " + who(owner) +
         ", which cannot be checked from here; delete the file if that process has ended");

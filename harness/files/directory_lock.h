@@ -14,12 +14,19 @@ namespace cleave {
 
 inline constexpr const char* kLockFile = "cleave.lock";
 
+// What is done about a file that another host left and that nobody seems to hold.
+enum class LeftElsewhere {
+  refuse,
+  take_over,  // where something else knows that its process has ended, as a batch system does of its tasks
+};
+
 class DirectoryLock {
  public:
   // Takes the lock at once or throws std::invalid_argument with one line: who holds it, or which file to delete where
   // another host left it; std::runtime_error where the disk has no locks. What a killed process of this host left is
   // taken over with a line on stderr. command: what the file says of us, "cleave run".
-  DirectoryLock(const std::filesystem::path& directory, const std::string& command);
+  DirectoryLock(const std::filesystem::path& directory, const std::string& command,
+                LeftElsewhere left_elsewhere = LeftElsewhere::refuse);
   // Deletes the file and gives the lock up.
   ~DirectoryLock();
   DirectoryLock(const DirectoryLock&) = delete;
@@ -28,7 +35,7 @@ class DirectoryLock {
  private:
   // Whether the file that was locked is still the one of that name.
   bool open_and_lock();
-  void take_over_or_refuse() const;
+  void take_over_or_refuse(LeftElsewhere left_elsewhere) const;
   void write_owner(const std::string& command) const;
 
   std::filesystem::path path_;

@@ -9,11 +9,13 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <new>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 
 #include "harness/base/room.h"
 #include "harness/files/write_all.h"
@@ -125,6 +127,14 @@ void check_end(const std::string& subject, const ReadLimits& limits, int status)
 }
 
 }  // namespace
+
+ReadLimits read_limits(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size =
+      std::filesystem::is_regular_file(path, error) ? std::filesystem::file_size(path, error) : 0;
+  constexpr std::size_t kMegabyte = 1 << 20;
+  return {256 * kMegabyte + 64 * size, static_cast<int>(5 + size / kMegabyte)};
+}
 
 std::string read_in_child(const std::string& subject, const ReadLimits& limits,
                           const std::function<std::string()>& read) {

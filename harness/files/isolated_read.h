@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -14,6 +15,9 @@ struct ReadLimits {
   std::size_t memory_bytes;  // beyond what the process has at the start
   int processor_s;
 };
+
+// Far more than a sound file of this size takes.
+ReadLimits read_limits(const std::filesystem::path& path);
 
 // Runs `read` in a child and returns what it returns. A std::exception of `read` becomes a std::invalid_argument of the
 // same text; so does the child's end by a signal or by a limit: "SUBJECT: damaged: the HDF5 library crashed while

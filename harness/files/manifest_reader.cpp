@@ -1,13 +1,13 @@
 #include "harness/files/manifest_reader.h"
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <vector>
 
+#include "harness/base/file_text.h"
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
 #include "harness/files/manifest.h"
@@ -22,10 +22,10 @@ using json = nlohmann::ordered_json;  // run ids are fingerprints of the options
 }
 
 json parse(const std::filesystem::path& path) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) reject(path, "cannot be read");
+  const std::optional<std::string> text = file_text(path);
+  if (!text) reject(path, "cannot be read");
   try {
-    return json::parse(file);
+    return json::parse(*text);
   } catch (const json::parse_error& error) {
     reject(path, "is not JSON from byte " + std::to_string(error.byte) + " on; is it damaged?");
   } catch (const json::out_of_range&) {

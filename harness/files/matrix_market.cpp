@@ -1,92 +1,62 @@
 #include "harness/files/matrix_market.h"
 
 #include <algorithm>
-#include <stdexcept>
-#include <tuple>
+#include <iterator>
+#include <numeric>
 #include <vector>
 
 #include "harness/base/numbers.h"
+#include "harness/files/interface_matrix.h"
+#include "harness/files/matrix_entries.h"
 
 namespace cleave {
 namespace {
 
-struct Entry {
-  int row, column;
-  double value;
-};
-
-// Entries at one place are summed in the order in which they came.
 std::string coordinate_text(const std::string& symmetry, const std::string& comment, int rows, int columns,
-                            std::vector<Entry> entries) {
-  const auto place = [](const Entry& entry) { return std::tuple(entry.column, entry.row); };
-  std::ranges::stable_sort(entries, {}, place);
+                            std::vector<MatrixEntry> entries) {
+  sum_entries(entries);
   std::string lines;
-  int count = 0;
-  for (std::size_t k = 0; k < entries.size();) {
-    double sum = 0;
-    const Entry& first = entries[k];
-    for (; k < entries.size() && place(entries[k]) == place(first); ++k) sum += entries[k].value;
-    if (sum == 0) continue;
-    lines += std::to_string(first.row + 1) + " " + std::to_string(first.column + 1) + " " + number_text(sum) +
-             "\n";
-    ++count;
-  }
+  for (const MatrixEntry& entry : entries)
+    lines += std::to_string(entry.row + 1) + " " + std::to_string(entry.column + 1) + " " +
+             number_text(entry.value) + "\n";
   return "%%MatrixMarket matrix coordinate real " + symmetry + "\n% " + comment + "\n" +
-         std::to_string(rows) + " " + std::to_string(columns) + " " + std::to_string(count) + "\n" + lines;
+         std::to_string(rows) + " " + std::to_string(columns) + " " + std::to_string(entries.size()) + "\n" +
+         lines;
 }
 
-std::vector<Entry> lower_mass(const StepProblem& problem) {
-  std::vector<Entry> entries;
-  for (int body = 0; body < problem.body_count(); ++body)
-    for (int a = 0; a < 6; ++a)
-      for (int b = 0; b <= a; ++b)
-        entries.push_back({6 * body + a, 6 * body + b, problem.mass[36 * std::size_t(body) + 6 * a + b]});
-  return entries;
-}
-
-// The at most twelve entries of a row of J.
-std::vector<Entry> row_of_jacobian(const StepProblem& problem, int row) {
-  std::vector<Entry> entries;
-  for (int side = 0; side < 2; ++side) {
-    const int body = problem.row_body[2 * std::size_t(row) + side];
-    for (int k = 0; body >= 0 && k < 6; ++k)
-      entries.push_back({row, 6 * body + k, problem.jacobian[12 * std::size_t(row) + 6 * side + k]});
-  }
-  return entries;
-}
-
-std::string mass_text(const StepProblem& problem) {
+// The mass alone.
+std::string mass_text(const StepProblem& problem, const StoredPartition*) {
   const int size = 6 * problem.body_count();
-  return coordinate_text("symmetric", "M, mass", size, size, lower_mass(problem));
+  return coordinate_text("symmetric", "M, mass", size, size, system_entries(problem, {}));
 }
 
-std::string jacobian_text(const StepProblem& problem) {
-  std::vector<Entry> entries;
+std::string jacobian_text(const StepProblem& problem, const StoredPartition*) {
+  std::vector<MatrixEntry> entries;
   for (int row = 0; row < problem.row_count(); ++row)
-    std::ranges::copy(row_of_jacobian(problem, row), std::back_inserter(entries));
+    std::ranges::copy(jacobian_entries(problem, row), std::back_inserter(entries));
   return coordinate_text("general", "J, Jacobian", problem.row_count(), 6 * problem.body_count(),
                          std::move(entries));
 }
 
-std::string system_text(const StepProblem& problem) {
-  std::vector<Entry> entries = lower_mass(problem);
-  for (int row = 0; row < problem.row_count(); ++row) {
-    if (problem.compliance[row] <= 0)
-      throw std::invalid_argument("--matrix: H is M + J^T C^-1 J, and compliance of row " +
-                                  std::to_string(row) + " = 0, allowed: > 0");
-    const std::vector<Entry> jacobian = row_of_jacobian(problem, row);
-    for (const Entry& a : jacobian)
-      for (const Entry& b : jacobian)
-        if (a.column >= b.column)
-          entries.push_back({a.column, b.column, a.value * b.value / problem.compliance[row]});
-  }
+std::string system_text(const StepProblem& problem, const StoredPartition*) {
+  std::vector<int> rows(static_cast<std::size_t>(problem.row_count()));
+  std::iota(rows.begin(), rows.end(), 0);
   const int size = 6 * problem.body_count();
-  return coordinate_text("symmetric", "H = M + J^T C^-1 J over all rows", size, size, std::move(entries));
+  return coordinate_text("symmetric", "H = M + J^T C^-1 J over all rows", size, size,
+                         system_entries(problem, rows));
 }
 
-constexpr MatrixOfProblem kMatrices[] = {{"M", "mass", mass_text},
-                                         {"J", "Jacobian", jacobian_text},
-                                         {"H", "M + J^T C^-1 J over all rows", system_text}};
+std::string interface_text(const StepProblem& problem, const StoredPartition* partition) {
+  const int size = static_cast<int>(interface_rows(problem, partition->part_of_body).size());
+  return coordinate_text("symmetric", "S, Schur complement over the interface rows of a partition", size,
+                         size, interface_entries(problem, partition->part_of_body));
+}
+
+constexpr MatrixOfProblem kMatrices[] = {
+    {"M", "mass", false, mass_text},
+    {"J", "Jacobian", false, jacobian_text},
+    {"H", "M + J^T C^-1 J over all rows", false, system_text},
+    {"S", "Schur complement over the interface rows of --partition", true, interface_text}};
 
 }  // namespace
 

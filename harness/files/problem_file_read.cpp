@@ -165,14 +165,6 @@ std::string read_packed(const fs::path& path) {
   }
 }
 
-// Far more than a sound file of this size takes.
-ReadLimits limits_for(const fs::path& path) {
-  std::error_code error;
-  const std::uintmax_t size = fs::is_regular_file(path, error) ? fs::file_size(path, error) : 0;
-  constexpr std::size_t kMegabyte = 1 << 20;
-  return {256 * kMegabyte + 64 * size, static_cast<int>(5 + size / kMegabyte)};
-}
-
 // Checks what the child handed back, whatever that is.
 ProblemFile checked_file(const std::string& bytes) {
   PackedProblemFile packed = unpack(bytes);
@@ -187,7 +179,7 @@ ProblemFile checked_file(const std::string& bytes) {
 
 ProblemFile read_problem_file(const fs::path& path) {
   const std::string bytes =
-      read_in_child(path.string(), limits_for(path), [&path] { return read_packed(path); });
+      read_in_child(path.string(), read_limits(path), [&path] { return read_packed(path); });
   try {
     return checked_file(bytes);
   } catch (const std::invalid_argument& error) {

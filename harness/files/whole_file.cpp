@@ -90,6 +90,42 @@ void write_whole_files(std::span<const NamedBytes> files) {
   for (const NamedBytes& named : files) publish_part_file(named.path);
 }
 
+GrowingFile::GrowingFile(const fs::path& path)
+    : path_(path),
+      descriptor_(::open(part_name_of(path).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) fail(path_, errno);
+  std::error_code ignored;
+  if (!fs::is_directory(path_, ignored)) return;
+  ::close(descriptor_);
+  fail(path_, EISDIR);  // the renaming would find out too late
+}
+
+GrowingFile::~GrowingFile() {
+  ::close(descriptor_);
+  if (!is_published_) ::unlink(part_name_of(path_).c_str());
+}
+
+void GrowingFile::write(std::string_view bytes) {
+  constexpr std::size_t kBlock = 1 << 20;
+  waiting_ += bytes;
+  if (waiting_.size() >= kBlock) flush();
+}
+
+void GrowingFile::finish() {
+  flush();
+  sync_file(part_name_of(path_));
+}
+
+void GrowingFile::publish() {
+  publish_part_file(path_);
+  is_published_ = true;
+}
+
+void GrowingFile::flush() {
+  if (!write_all(descriptor_, waiting_)) fail(path_, errno);
+  waiting_.clear();
+}
+
 void sync_file(const fs::path& path) {
   if (const Descriptor file(path, O_RDONLY); !file.is_open() || !file.sync())
     throw std::runtime_error(path.string() + ": cannot be written: " + std::strerror(errno));

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace cleave {
@@ -16,6 +17,28 @@ struct NamedBytes {
   std::string_view bytes;
 };
 void write_whole_files(std::span<const NamedBytes> files);
+
+// A file that is written piece by piece, because it does not fit into memory: it lies aside until publish(), and is removed where
+// that is not called.
+class GrowingFile {
+ public:
+  explicit GrowingFile(const std::filesystem::path& path);
+  ~GrowingFile();
+  GrowingFile(const GrowingFile&) = delete;
+  GrowingFile& operator=(const GrowingFile&) = delete;
+
+  void write(std::string_view bytes);
+  void finish();   // all is on the disk, under part_name_of(path)
+  void publish();  // after finish()
+
+ private:
+  void flush();
+
+  std::filesystem::path path_;
+  std::string waiting_;
+  int descriptor_;
+  bool is_published_ = false;
+};
 
 // Where a file lies until it is whole: `path` with ".part".
 std::filesystem::path part_name_of(const std::filesystem::path& path);

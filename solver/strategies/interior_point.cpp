@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solver/strategies/cone_newton.h"
 #include "solver/strategies/interior_constants.h"
@@ -54,6 +55,7 @@ class InteriorPoint : public Strategy {
   int since_best_ = 0, grown_ = 0, raises_ = 0;
   double delta_ = 0, least_delta_ = 0, best_delta_ = 0;
   bool has_coulomb_ = false;
+  bool is_start_ = true, best_is_start_ = false;  // of cones, whose error is that of the impulses alone
   bool rounds_ = false;  // there are rows that delta may matter to
 };
 
@@ -120,17 +122,20 @@ bool InteriorPoint::polish(SolveState& state) {
 }
 
 // Keeps the best iterate. Finished: within the limit, and no better for a while. Rounding: full steps, but a
-// growing error.
+// growing error. The error of cones does not see that the start is inside them where the impulses are not: impulses of the step
+// before may be better than the first iterates, which are none the worse for it.
 InteriorPoint::Progress InteriorPoint::watch(const SolveState& state, double error) {
+  const bool is_start = std::exchange(is_start_, false);
   if (error < best_error_) {
     best_error_ = error;
+    best_is_start_ = is_start && !state.step->set().cones().empty();
     best_delta_ = delta_;
     since_best_ = grown_ = 0;
     iterate_.keep(state);
     return Progress::good;
   }
   ++since_best_;
-  const bool settled = best_error_ < constants_.settled * state.step->velocity_scale();
+  const bool settled = !best_is_start_ && best_error_ < constants_.settled * state.step->velocity_scale();
   if (settled && last_step_ >= constants_.full_step && error > constants_.growth * best_error_) ++grown_;
   if (best_error_ <= state.step->exact_limit_m_per_s() && since_best_ >= constants_.patience) {
     return Progress::finished;
@@ -156,6 +161,7 @@ void InteriorPoint::begin(SolveState& state) {
   rounds_ = least < constants_.most_delta;
   best_error_ = std::numeric_limits<double>::infinity();
   since_best_ = grown_ = raises_ = 0;
+  is_start_ = true;
   has_coulomb_ = std::ranges::any_of(state.step->set().cones(), &FrictionCone::coulomb);
   iterate_.start(state);
 }

@@ -84,6 +84,31 @@ TEST_F(Campaigns, AreCollectedIntoOneTable) {
   EXPECT_EQ(run_cleave({"collect", directory_ / "a", "--out", directory_ / "all.csv"}).exit_code, 1);
 }
 
+// verify knows the tables by their checksums: a byte of any of the four files, a file that is gone, one that is none of them.
+TEST_F(Campaigns, CollectedAreVerified) {
+  const fs::path out = directory_ / "all.csv";
+  ASSERT_EQ(run_cleave({"collect", directory_ / "a", "--out", out}).exit_code, 0);
+  const ProgramResult good = run_cleave({"verify", out});
+  EXPECT_EQ(good.exit_code, 0);
+  EXPECT_EQ(count_lines(good.out), 4);
+  for (const char* name : {"all.csv", "all.cells.csv", "all.columns.csv", "all.checksums"}) {
+    const std::string text = read_text(directory_ / name);
+    for (const std::size_t place : {std::size_t{0}, text.size() / 2, text.size() - 1}) {
+      std::string flipped = text;
+      flipped[place] ^= 1;
+      std::ofstream(directory_ / name, std::ios::binary) << flipped;
+      EXPECT_EQ(run_cleave({"verify", out}).exit_code, 3) << name << " byte " << place;
+    }
+    fs::remove(directory_ / name);
+    EXPECT_EQ(run_cleave({"verify", out}).exit_code, 3) << name;
+    std::ofstream(directory_ / name, std::ios::binary) << text;
+  }
+  const std::string sums = read_text(directory_ / "all.checksums");
+  std::ofstream(directory_ / "all.checksums", std::ios::app) << sums.substr(0, 64) << "  other.csv\n";
+  EXPECT_NE(run_cleave({"verify", out}).out.find("it names other files than the three tables"),
+            std::string::npos);
+}
+
 TEST_F(Campaigns, WhatWasNotWrittenWholeIsLeftOutAndSaid) {
   const std::string text = read_text(steps("a", "cell2"));
   std::ofstream(steps("a", "cell2"), std::ios::binary) << text.substr(0, text.size() - 5);
@@ -187,6 +212,41 @@ TEST_F(Campaigns, AStepThatWasSolvedAndIsNoMoreFails) {
   EXPECT_EQ(result.exit_code, 3);
   EXPECT_NE(result.out.find(",5,1,0,"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find(",lost\n"), std::string::npos) << result.out;
+}
+
+// As on a cluster of two kinds of nodes: rounds of a cell here and there.
+TEST_F(Campaigns, OfTwoProcessorsAreKeptApart) {
+  const auto set_machine = [&](const std::string& campaign, const std::string& cell) {
+    const fs::path path = directory_ / campaign / cell / "manifest.json";
+    std::string text = read_text(path);
+    const std::size_t from = text.find(": \"", text.find("\"cpu_model\"")) + 3;
+    text.replace(from, text.find('"', from) - from, "Another");
+    std::ofstream(path) << text;
+  };
+  fs::copy(directory_ / "a/cell1", directory_ / "a/round2", fs::copy_options::recursive);
+  EXPECT_EQ(compare().exit_code, 0);
+  set_machine("a", "round2");
+  const ProgramResult refused = compare();
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("was measured on '"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("Another"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("add machine to --by"), std::string::npos) << refused.err;
+  EXPECT_EQ(compare({"--column", "interface_rows"}).exit_code, 0);  // equal on every processor
+  const ProgramResult apart = compare({"--by", "run_id,partitioner,machine"});
+  EXPECT_EQ(apart.exit_code, 0) << apart.err;
+  EXPECT_NE(apart.err.find("4 groups in both, 2 in A alone"), std::string::npos) << apart.err;
+
+  fs::remove_all(directory_ / "a/round2");
+  set_machine("b",
+              "cell1");  // two campaigns on two machines may be held against each other, and that is said
+  const ProgramResult other = compare();
+  EXPECT_EQ(other.exit_code, 0) << other.err;
+  EXPECT_NE(other.err.find("2 groups on another processor in B"), std::string::npos) << other.err;
+
+  ASSERT_EQ(run_cleave({"collect", directory_ / "b", "--out", directory_ / "all.csv"}).exit_code, 0);
+  const CsvTable table = read_csv(directory_ / "all.csv");
+  EXPECT_EQ(table.at(0, "machine"), "Another");
+  EXPECT_NE(table.at(23, "machine"), "Another");
 }
 
 TEST_F(Campaigns, WithoutACommonGroupPrintNoTable) {

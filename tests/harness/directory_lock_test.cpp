@@ -164,6 +164,19 @@ TEST(DirectoryLock, WhatAnotherHostLeftIsNamedAndKept) {
   EXPECT_EQ(read_text(directory / kLockFile), text);
 }
 
+TEST(DirectoryLock, WhatAnotherHostLeftIsTakenOverWhereThatIsAskedForAndWhatIsHeldIsNot) {
+  const TemporaryDirectory directory;
+  std::ofstream(directory / kLockFile) << "host: elsewhere\npid: 12\nstart: now\ncommand: cleave run\n";
+  {
+    const DirectoryLock lock(directory.path(), "cleave test", LeftElsewhere::take_over);
+    EXPECT_NE(read_text(directory / kLockFile).find("host: " + host_name() + "\n"), std::string::npos);
+    std::ofstream(directory / kLockFile) << "host: elsewhere\npid: 12\nstart: now\ncommand: cleave run\n";
+    EXPECT_THROW(DirectoryLock(directory.path(), "cleave test", LeftElsewhere::take_over),
+                 std::invalid_argument);
+  }
+  EXPECT_FALSE(fs::exists(directory / kLockFile));
+}
+
 TEST(DirectoryLock, IsGivenUpOnErrorsToo) {
   const TemporaryDirectory directory;
   {

@@ -77,9 +77,45 @@ StepProblem full_problem(int bodies, std::uint64_t seed) {
   return problem;
 }
 
-std::string text_of(const std::string& name, const StepProblem& problem) {
+// By its definition in dense arrays: interior rows into H, whose inverse Gauss and Jordan find, interface rows around it.
+Dense schur_complement(const StepProblem& p, const std::vector<int>& part) {
+  const Dense j = jacobian(p);
+  std::vector<int> across;
+  Dense h = mass(p);
+  const int size = static_cast<int>(h.size());
+  for (int r = 0; r < p.row_count(); ++r) {
+    const int a = p.row_body[2 * r], b = p.row_body[2 * r + 1];
+    if (b >= 0 && part[a] != part[b]) {
+      across.push_back(r);
+      continue;
+    }
+    for (int x = 0; x < size; ++x)
+      for (int y = 0; y < size; ++y) h[x][y] += j[r][x] * j[r][y] / p.compliance[r];
+  }
+  Dense inverse(size, std::vector<double>(size, 0.0));
+  for (int k = 0; k < size; ++k) inverse[k][k] = 1;
+  for (int k = 0; k < size; ++k) {
+    const double pivot = h[k][k];
+    for (int y = 0; y < size; ++y) h[k][y] /= pivot, inverse[k][y] /= pivot;
+    for (int x = 0; x < size; ++x) {
+      const double factor = x == k ? 0 : h[x][k];
+      for (int y = 0; y < size; ++y) h[x][y] -= factor * h[k][y], inverse[x][y] -= factor * inverse[k][y];
+    }
+  }
+  Dense s(across.size(), std::vector<double>(across.size(), 0.0));
+  for (std::size_t a = 0; a < across.size(); ++a) {
+    s[a][a] = p.compliance[across[a]];
+    for (std::size_t b = 0; b < across.size(); ++b)
+      for (int x = 0; x < size; ++x)
+        for (int y = 0; y < size; ++y) s[a][b] += j[across[a]][x] * inverse[x][y] * j[across[b]][y];
+  }
+  return s;
+}
+
+std::string text_of(const std::string& name, const StepProblem& problem,
+                    const StoredPartition* partition = nullptr) {
   for (const MatrixOfProblem& matrix : matrices_of_problem())
-    if (name == matrix.name) return matrix.text(problem);
+    if (name == matrix.name) return matrix.text(problem, partition);
   throw std::logic_error(name);
 }
 
@@ -94,6 +130,25 @@ TEST(MatrixMarket, HoldsTheMatricesOfAProblem) {
       for (std::size_t b = 0; b < found.size(); ++b)
         EXPECT_NEAR(found[a][b], expected[a][b], 1e-12 * std::abs(expected[a][a] + expected[b][b]));
   }
+}
+
+TEST(MatrixMarket, HoldsTheSchurComplementOfAPartition) {
+  const StepProblem problem = full_problem(9, 7);
+  for (const std::vector<int>& parts : {std::vector<int>{0, 0, 0, 1, 1, 1, 2, 2, 2},
+                                        {0, 1, 2, 3, 4, 5, 6, 7, 8},
+                                        {0, 1, 0, 1, 0, 1, 0, 1, 0}}) {
+    StoredPartition partition;
+    partition.part_of_body = parts;
+    const Dense found = read_matrix_market(text_of("S", problem, &partition));
+    const Dense expected = schur_complement(problem, parts);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t a = 0; a < found.size(); ++a)
+      for (std::size_t b = 0; b < found.size(); ++b)
+        EXPECT_NEAR(found[a][b], expected[a][b], 1e-11 * std::abs(expected[a][a] + expected[b][b]));
+  }
+  StoredPartition whole;
+  whole.part_of_body.assign(9, 0);
+  EXPECT_TRUE(read_matrix_market(text_of("S", problem, &whole)).empty());
 }
 
 TEST(MatrixMarket, HasNoHWithoutCompliance) {
@@ -111,6 +166,7 @@ TEST(MatrixMarket, IsWrittenByExport) {
   const TemporaryDirectory directory;
   ProblemFile file = sample_file(4, 3);
   file.problem = full_problem(4, 3);
+  file.partitions.clear();
   write_problem_file(directory / "a.h5", file);
   const auto run = [&](std::vector<std::string> more) {
     std::vector<std::string> arguments = {"export", directory / "a.h5", "--out", directory / "a.mtx",
@@ -119,8 +175,9 @@ TEST(MatrixMarket, IsWrittenByExport) {
     return run_cleave(arguments);
   };
   for (const MatrixOfProblem& matrix : matrices_of_problem()) {
+    if (matrix.is_of_partition) continue;
     ASSERT_EQ(run({"--format", "mtx", "--matrix", matrix.name}).exit_code, 0);
-    EXPECT_EQ(read_text(directory / "a.mtx"), matrix.text(file.problem)) << matrix.name;
+    EXPECT_EQ(read_text(directory / "a.mtx"), matrix.text(file.problem, nullptr)) << matrix.name;
   }
   const auto refusal = [&](std::vector<std::string> more) {
     const ProgramResult result = run(more);
@@ -128,11 +185,15 @@ TEST(MatrixMarket, IsWrittenByExport) {
     return result.err;
   };
   EXPECT_EQ(refusal({"--format", "mtx"}),
-            "cleave export: --matrix: is required with --format mtx; choices: M, J, H\n");
+            "cleave export: --matrix: is required with --format mtx; choices: M, J, H, S\n");
   EXPECT_EQ(refusal({"--format", "mtx", "--matrix", "Q"}),
-            "cleave export: --matrix: 'Q' is unknown; choices: M, J, H\n");
+            "cleave export: --matrix: 'Q' is unknown; choices: M, J, H, S\n");
   EXPECT_EQ(refusal({"--format", "metis", "--matrix", "M"}),
-            "cleave export: --matrix: --format metis has none; leave it out\n");
+            "cleave export: --matrix: --format metis writes none; leave it out\n");
+  EXPECT_EQ(refusal({"--format", "mtx", "--matrix", "S"}),
+            "cleave export: --partition: --matrix S is of one; name a label that the file stores\n");
+  EXPECT_EQ(refusal({"--format", "mtx", "--matrix", "H", "--partition", "x"}),
+            "cleave export: --partition: --matrix H is of none; leave it out\n");
 }
 
 }  // namespace

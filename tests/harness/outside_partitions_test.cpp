@@ -115,7 +115,7 @@ TEST_F(OutsidePartitions, ExportRefusesInOneLine) {
     return result.err;
   };
   EXPECT_EQ(error_of({"export", problem(), "--format", "scotch", "--out", out}),
-            "cleave export: --format: 'scotch' is unknown; choices: metis, mtx\n");
+            "cleave export: --format: 'scotch' is unknown; choices: metis, mtx, fclib, vtu\n");
   EXPECT_FALSE(fs::exists(out));
   EXPECT_NE(error_of({"export", problem(), "--out", out}).find("--format: is required"), std::string::npos);
   EXPECT_NE(error_of({"export", problem(), "--format", "metis"}).find("--out: is required"),
@@ -129,6 +129,26 @@ TEST_F(OutsidePartitions, ExportRefusesInOneLine) {
   EXPECT_EQ(read_text(out), "mine");
   EXPECT_EQ(run_cleave({"export", problem(), "--format", "metis", "--out", out, "--force"}).exit_code, 0);
   EXPECT_TRUE(read_text(out).starts_with("20 "));
+}
+
+TEST_F(OutsidePartitions, ExportedPartsAreThoseThatWereStored) {
+  const fs::path parts = write_parts("parts.txt", 20, 3);
+  ASSERT_EQ(replay(parts, "out", {"--write-solutions"}).exit_code, 0);
+  const fs::path solved = *this / "out" / "rock_pile_step000080.h5";
+  const std::string label = read_problem_file(solved).partitions.begin()->first;
+  const std::string out = *this / "again.txt";
+  ASSERT_EQ(run_cleave({"export", solved, "--format", "metis", "--partition", label, "--out", out}).exit_code,
+            0);
+  EXPECT_EQ(read_text(out), read_text(parts));
+  const auto refusal = [&](const fs::path& file, const char* format, const std::string& name) {
+    return run_cleave({"export", file, "--format", format, "--partition", name, "--out", *this / "no"}).err;
+  };
+  EXPECT_EQ(refusal(problem(), "metis", label),
+            "cleave export: --partition: " + problem().string() +
+                " stores no partition; `cleave replay --write-solutions` stores one\n");
+  EXPECT_NE(refusal(solved, "metis", label + "x").find("(did you mean '" + label + "'?)"), std::string::npos);
+  EXPECT_NE(refusal(solved, "vtu", label).find("--format vtu writes all that there are"), std::string::npos);
+  EXPECT_FALSE(fs::exists(*this / "no"));
 }
 
 TEST_F(OutsidePartitions, PartsOfMetisComeBackAsTheyWere) {

@@ -565,6 +565,18 @@ TEST(SweepVerify, FindsEveryDamagedByteOfACampaign) {
   EXPECT_EQ(campaign.failures(), "");
 }
 
+// The table that the last job of a cluster leaves.
+TEST(SweepVerify, LooksAtTheMergedTable) {
+  const Campaign campaign(kTiny);
+  ASSERT_EQ(campaign.sweep().exit_code, 0);
+  fs::create_directory(campaign.out() / "slurm");
+  const fs::path table = campaign.out() / "slurm/results.csv";
+  ASSERT_EQ(run_cleave({"collect", campaign.out(), "--out", table}).exit_code, 0);
+  EXPECT_EQ(campaign.failures(), "");
+  flip_byte(table, 1000);
+  EXPECT_NE(campaign.failures().find("results.csv: sha256 "), std::string::npos);
+}
+
 TEST(SweepVerify, FindsAnIndexThatSaysSomethingElse) {
   const Campaign campaign(std::string(kTiny) + "seed = [1, 2]\n");
   ASSERT_EQ(campaign.sweep().exit_code, 0);
@@ -673,6 +685,69 @@ TEST(CampaignIndex, EveryColumnIsInTheReadme) {
   EXPECT_EQ(listed, columns);
 }
 
+// A host died with a task on it: its locks stay, on the share and on a cell.
+TEST(Sweep, TakesOverWhatADeadHostLeftWhereThatIsAskedFor) {
+  const Campaign campaign(std::string(kTiny) + "seed = [1, 2, 3]\n");
+  ASSERT_EQ(campaign.sweep({"--shard", "1/2"}).exit_code, 0);
+  const fs::path share = campaign.out() / "shards/1of2";
+  const fs::path cell = campaign.out() / "cells" / read_csv(share / "index.csv").at(1, "cell");
+  const std::string left = "host: elsewhere\npid: 12\nstart: now\ncommand: cleave sweep\n";
+  fs::remove(cell / "checksums");
+  for (const fs::path& directory : {share, cell}) std::ofstream(directory / "cleave.lock") << left;
+
+  const ProgramResult refused = campaign.sweep({"--shard", "1/2"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("was left by process 12 on host elsewhere"), std::string::npos) << refused.err;
+  const ProgramResult taken = campaign.sweep({"--shard", "1/2", "--take-over"});
+  EXPECT_EQ(taken.exit_code, 0) << taken.err;
+  EXPECT_NE(taken.err.find("2 cells: 2 ok; 1 kept"), std::string::npos) << taken.err;
+  for (const fs::path& directory : {share, cell}) EXPECT_FALSE(fs::exists(directory / "cleave.lock"));
+}
+
+TEST(Sweep, MergesSharesWithoutRunningAnything) {
+  const Campaign campaign(std::string(kTiny) + "seed = [1, 2, 3]\n");
+  ASSERT_EQ(campaign.sweep({"--shard", "1/2"}).exit_code, 0);
+  const ProgramResult half = campaign.sweep({"--merge"});
+  EXPECT_EQ(half.exit_code, 2);
+  EXPECT_NE(half.err.find("3 cells: 2 ok, 1 pending; 2 kept"), std::string::npos) << half.err;
+  const CsvTable missing = parse_csv(half.out);
+  EXPECT_EQ(missing.column("number"), Words({"2"}));
+  EXPECT_EQ(missing.column("status"), Words({"pending"}));
+  EXPECT_EQ(campaign.index().column("status"), Words({"ok", "pending", "ok"}));
+
+  ASSERT_EQ(campaign.sweep({"--shard", "2/2"}).exit_code, 0);
+  const auto times = campaign.manifest_times();
+  const ProgramResult whole = campaign.sweep({"--merge"});
+  EXPECT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_TRUE(parse_csv(whole.out).rows.empty()) << whole.out;
+  EXPECT_EQ(campaign.index().column("status"), Words(3, "ok"));
+  EXPECT_EQ(campaign.manifest_times(), times);
+  fs::create_directory(campaign.out() / "slurm");  // job files, which are no results
+  EXPECT_EQ(campaign.failures(), "");
+  fs::remove(campaign.out() / "index.csv");
+  fs::remove(campaign.out() / "spec.toml");
+  fs::remove(campaign.out() / "checksums");
+  EXPECT_EQ(campaign.failures(), "");
+
+  for (const Words& words : {Words{"--shard", "1/2"}, Words{"--force"}, Words{"--dry-run"}}) {
+    Words more = {"--merge"};
+    more.insert(more.end(), words.begin(), words.end());
+    const ProgramResult refused = campaign.sweep(more);
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_NE(refused.err.find("--merge: "), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("leave out " + words.front()), std::string::npos) << refused.err;
+  }
+}
+
+// A merge looks at what failed and does not try it again.
+TEST(Sweep, MergesFailuresAsTheyAre) {
+  const Campaign campaign(std::string(kEndless) + "seed = [1, 2]\n");
+  ASSERT_EQ(campaign.sweep({"--shard", "1/2", "--cell-seconds", "0.2"}).exit_code, 2);
+  const ProgramResult merged = campaign.sweep({"--merge"});
+  EXPECT_EQ(merged.exit_code, 2);
+  EXPECT_EQ(parse_csv(merged.out).column("status"), Words({"timeout", "pending"}));
+}
+
 TEST(Rerun, RepeatsACellAndHoldsItsRowsAgainstIt) {
   const Campaign campaign(kTiny);
   ASSERT_EQ(campaign.sweep().exit_code, 0);
@@ -709,8 +784,57 @@ TEST(Rerun, RefusesWhatIsNoCompleteRun) {
             0);
   EXPECT_NE(run_cleave({"rerun", campaign / "record"}).err.find("command is 'record', allowed: run"),
             std::string::npos);
-  EXPECT_NE(run_cleave({"rerun", campaign / "record", "--threads", "0"}).err.find("command is"),
+  EXPECT_NE(run_cleave({"rerun", campaign / "record", "--threads", "0"}).err.find("--threads: 0 is not in"),
             std::string::npos);
+}
+
+TEST(VerifyRerun, RepeatsSomeCellsWithTheirThreadsAndWithAnotherNumber) {
+  const Campaign campaign(std::string(kTiny) + "seed = [1, 2, 3]\nthreads = [1, 2]\n");
+  ASSERT_EQ(campaign.sweep().exit_code, 0);
+  const int checks = count_lines(run_cleave({"verify", campaign.out()}).out);
+  const ProgramResult some = run_cleave({"verify", campaign.out(), "--rerun", "2"});
+  EXPECT_EQ(some.exit_code, 0) << some.out << some.err;
+  EXPECT_EQ(count_lines(some.out), checks + 4);
+  const ProgramResult all = run_cleave({"verify", campaign.out(), "--rerun", "100"});
+  EXPECT_EQ(count_lines(all.out), checks + 12);
+  for (const char* how :
+       {"repeated run, in ", "repeated run with --threads 1, in ", "repeated run with --threads 2, in "})
+    EXPECT_NE(all.out.find(how), std::string::npos) << all.out;
+}
+
+// Rows that a program with other results would leave: whole, of one mind, and not to be had again.
+TEST(VerifyRerun, FindsRowsThatCannotBeHadAgain) {
+  const Campaign campaign(kTiny);
+  ASSERT_EQ(campaign.sweep().exit_code, 0);
+  const fs::path cell = campaign.cell();
+  std::string text = read_text(cell / "steps.csv");
+  const std::string hash = read_csv(cell / "steps.csv").at(1, "state_hash");
+  for (std::size_t at = text.find(hash); at != std::string::npos; at = text.find(hash, at + 1))
+    text.replace(at, hash.size(), "0123456789abcdef");
+  std::ofstream(cell / "steps.csv") << text;
+  fs::remove(cell / "checksums");
+  const ProgramResult result = run_cleave({"verify", cell, "--rerun", "1"});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_NE(result.out.find("state_hash = '0123456789abcdef', again '" + hash + "'"), std::string::npos)
+      << result.out;
+}
+
+TEST(VerifyRerun, RefusesWhatHoldsNoRun) {
+  const Campaign campaign(kTiny);
+  const auto refusal = [&campaign](const fs::path& path, const char* count) {
+    const ProgramResult result = run_cleave({"verify", path, "--rerun", count});
+    EXPECT_EQ(result.exit_code, 1) << result.out;
+    EXPECT_EQ(result.out, "");
+    return result.err;
+  };
+  ASSERT_EQ(run_cleave({"record", "--scene", "rock_pile", "--bodies", "3", "--at", "1", "--out",
+                        campaign / "record"})
+                .exit_code,
+            0);
+  EXPECT_NE(refusal(campaign / "record", "0").find("--rerun: 0 is not in "), std::string::npos);
+  EXPECT_NE(refusal(campaign / "record", "two").find("--rerun: 'two'"), std::string::npos);
+  EXPECT_NE(refusal(campaign / "record", "1").find("holds no "), std::string::npos);
+  EXPECT_NE(refusal(campaign / "none", "1").find("is no directory"), std::string::npos);
 }
 
 }  // namespace

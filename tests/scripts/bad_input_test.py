@@ -11,7 +11,7 @@ import tempfile
 import unittest
 
 from command_table import BAD, COMMANDS, NEAR
-from synthetic import SCRIPTS, write_matrix, write_steps
+from synthetic import SCRIPTS, command_files, write_matrix, write_steps
 
 # Answers what it would be known by, refuses what is called nope, and leaves a file where it is run.
 PROGRAM = """#!/bin/sh
@@ -103,7 +103,7 @@ def faults_of_values(command):
 class TableTest(unittest.TestCase):
 
     def test_every_command_stands_in_the_table(self):
-        self.assertEqual({path.name for path in SCRIPTS.iterdir() if path.is_file()}, set(COMMANDS))
+        self.assertEqual({str(path.relative_to(SCRIPTS)) for path in command_files()}, set(COMMANDS))
 
     def test_every_option_stands_in_the_table(self):
         for name, command in COMMANDS.items():

@@ -43,6 +43,7 @@ BAD = {
     "target": ("",),
     "trials": ("", "edits,", "edit"),
     "input directory": ("", "{file}", "{out}/nowhere"),
+    "input file": ("", "{out}/nowhere", "{empty}"),
     "output directory": ("", "{file}", "{file}/below/it", "/proc/nowhere", "{out}/" + 300 * "x"),
     "output file": ("", "{empty}", "{file}/below", "/dev/full", "{out}/" + 300 * "x"),
 }
@@ -91,6 +92,9 @@ COMMANDS = {
     "setup": Command({"--preset": "preset", "--target": "target"}),
     "table1": Command({"--format": "format", "--where": "condition"}, ("{tree}",), ("{tree}",), ("{tree}",)),
     "test": Command({"--preset": "preset"}, passes_on=True),
+    "hidden_choices": Command({"--spec": "input file", "--report": "output directory", **MEASURED}, runs=True),
+    "slurm/submit": Command({"--tasks": "count", "--dry-run": "", "--out": "output directory"},
+                            ("{file}", "--tasks=1", "--out={out}"), runs=True),
     "torture": Command({"--minutes": "count", "--seed": "seed", "--trials": "trials", "--count": "count", "--only": "seed",
                         "--patience": "count", "--side-by-side": "count", **MEASURED}, ("--minutes", "1"), runs=True),
     "tradeoff": Command({"--most-sweeps": "count", "--steps": "count", "--threads": "count", **MEASURED}, runs=True),

@@ -4,7 +4,7 @@ import re
 import subprocess
 import unittest
 
-from synthetic import ROOT, SCRIPTS, good_row, run_script
+from synthetic import ROOT, SCRIPTS, command_files, good_row, run_script
 
 from cleave_scripts.results.steps import EXACT_LIMIT
 
@@ -27,6 +27,9 @@ USED_BY = {
     "libtomlplusplus-dev": ("CMakeLists.txt", "toml++"),
     "libgtest-dev": ("tests/CMakeLists.txt", "GTest"),
     "libbenchmark-dev": ("tests/CMakeLists.txt", "benchmark"),
+    "slurm-wlm": ("tests/scripts/slurm_cluster.py", "slurmctld"),
+    "munge": ("tests/scripts/slurm_cluster.py", "munged"),
+    "libfclib-dev": ("tests/CMakeLists.txt", "fclib"),
     "libmetis-dev": ("CMakeLists.txt", "METIS"),
     "libscotch-dev": ("CMakeLists.txt", "SCOTCH"),
     "libbullet-dev": ("harness/peers/CMakeLists.txt", "BulletDynamics-float64"),
@@ -117,7 +120,7 @@ class PackagesTest(unittest.TestCase):
         import sys
         files = [
             *(SCRIPTS / "cleave_scripts").rglob("*.py"), *(ROOT / "tests" / "scripts").glob("*.py"),
-            *(file for file in SCRIPTS.iterdir() if file.is_file() and file.read_text().startswith("#!/usr/bin/python3"))
+            *(file for file in command_files() if file.read_text().startswith("#!/usr/bin/python3"))
         ]
         names = set()
         for file in files:
@@ -157,20 +160,17 @@ class ColumnsTest(unittest.TestCase):
 
 class ScriptsTest(unittest.TestCase):
 
-    def commands(self):
-        return [file for file in SCRIPTS.iterdir() if file.is_file() and not file.suffix]
-
     def test_every_command_can_be_run_and_explains_itself(self):
-        self.assertGreaterEqual(len(self.commands()), 6)
-        for file in self.commands():
+        self.assertGreaterEqual(len(command_files()), 6)
+        for file in command_files():
             self.assertIn(file.read_text().splitlines()[0], ("#!/bin/bash", "#!/usr/bin/python3"), file)
-            result = run_script(file.name, "--help")
+            result = run_script(file.relative_to(SCRIPTS), "--help")
             self.assertEqual(result.returncode, 0, file)
             self.assertIn("usage: ", result.stdout, file)
             self.assertIn("Exit codes", result.stdout, file)
 
     def test_bash_scripts_parse_and_are_strict(self):
-        for file in [*self.commands(), ROOT / ".ci" / "run"]:
+        for file in [*command_files(), ROOT / ".ci" / "run"]:
             text = file.read_text()
             if text.startswith("#!/bin/bash"):
                 self.assertIn("\nset -euo pipefail\n", text, file)

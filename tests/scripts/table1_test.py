@@ -145,6 +145,13 @@ class ChoiceTest(Table1Test):
         self.assertIn("no measured rows", self.table("--where", "threads=8", code=1))
         self.assertIn("no column color", self.table("--where", "color=red", code=1))
 
+    def test_times_of_two_processors_are_not_averaged(self):
+        for seed, model in ((1, "A"), (2, "B")):
+            write_steps(self.directory / str(seed), [dict(row, seed=seed, t_s_ms=seed) for row in matrix("rock_pile", [0])])
+            write_manifest(self.directory / str(seed), machine={"cpu_model": model, "cores": 2})
+        self.assertIn("mix machine A, B; choose one with --where machine=A", self.table(code=1))
+        self.assertEqual(self.cells("--where", "machine=B")["rock_pile", "bfs", "kl"]["t_s_ms"], "2")
+
     def test_a_step_given_twice_is_refused(self):
         for name in ("a", "b"):
             write_steps(self.directory / name, matrix("rock_pile", [0]))

@@ -68,8 +68,8 @@ class AccuracyTest(unittest.TestCase):
     def test_a_residual_is_relative_to_the_free_velocity_and_partitions_are_paid_for(self):
         problem, = problems([row("schur", 4, 0.5, "mix", fastest=10)])
         self.assertEqual(problem.time_ms("schur, mix+fm", LIMITS[0]), 5)
-        slow, = problems([row("pgs", 4, 0.5, fastest=0.1)])  # not divided by less than 1
-        self.assertEqual(slow.time_ms("pgs", LIMITS[0]), math.inf)
+        slow, = problems([row("pgs", 4, 0.05, fastest=0.1)])  # not divided by less than 1, which would make it 0.5
+        self.assertEqual([slow.time_ms("pgs", limit) for limit in LIMITS[:2]], [4, math.inf])
 
     def test_a_sweep_costs_its_time_over_rows_and_sweeps_of_long_solves(self):
         long = {**row("pgs@until=0.1@sweeps=300", 2, 0.09), "iterations": "200"}
@@ -149,7 +149,11 @@ class TradeoffTest(StandInCase):
         self.assertEqual({line["cfm"] for line in split}, {"1e-4"})
         self.assertEqual({partitions_of_solvers.solver_name(line) for line in split},
                          {*partitions_of_solvers.DIRECT, *partitions_of_solvers.ITERATIVE})
-        small, = [call for call in self.calls() if "--scene rock_pile" in call and " 1 --steps 400 " in call]
+        runs = [call for call in self.calls() if call.startswith("run ")]
+        self.assertEqual(len(runs), len(SCENES) * len(MOVERS))
+        for words in map(str.split, runs):  # alone: what is measured is what moves the world
+            self.assertEqual(words[words.index("--advance") + 1], words[words.index("--solver") + 1])
+        small, = [call for call in runs if "--scene rock_pile" in call and " 1 --steps 400 " in call]
         self.assertIn(f"--dt {1 / 60 / 20!r}", small)
         for name in ("time_to_accuracy", "accuracy_profile"):
             self.assertTrue((self.directory / "out" / f"{name}.png").exists(), name)

@@ -5,6 +5,7 @@ import pandas
 
 from cleave_scripts.figures import solver_labels
 from cleave_scripts.results.about import options_about, setup_columns
+from cleave_scripts.results.manifest import processor
 from cleave_scripts.results.names import NO_PARTITIONER, said_parameters
 
 SCALING_FOLDER = "scaling"
@@ -77,7 +78,7 @@ def _without_said(rows, column):
 
 
 def _setup(manifest, keys):
-    """(option or column, value) of all that has to be the same in another block of the same setup."""
+    """(option or column, value) of all that has to be the same in another block of the same setup, the processor too."""
     about = options_about(manifest)
-    options = {name: str(value) for name, value in manifest.get("options", {}).items() if about.get(name) in SETUP}
+    options = {"machine": processor(manifest)} | {name: str(value) for name, value in manifest.get("options", {}).items() if about.get(name) in SETUP}
     return frozenset((options | {column: str(keys[column].iloc[0]) for column in keys if column != "threads"}).items())

@@ -2,7 +2,7 @@
 import dataclasses
 
 from cleave_scripts.figures import (interface_cost, kernel_value, ladder_map, speed_up, stages, times_by_combination,
-                                    times_by_size, times_by_step, trade_off)
+                                    times_by_size, times_by_step, trade_off, verdict_map)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -18,6 +18,7 @@ FIGURES = (
            True),
     Figure("figure4", "Figure 4: solve time against the number of rocks", times_by_size.draw, True),
     Figure("figure5", "Figure 5: solve time of every step of Log Tower", times_by_step.draw, True),
+    Figure("verdict_map", "The verdict map: what holds under which open choice", verdict_map.draw),
     Figure("trade_off", "What accuracy costs: time against error", trade_off.draw),
     Figure("ladder", "The stability ladder: where each solver fails first", ladder_map.draw),
     Figure("stages", "Where the solve spends its time", stages.draw_combinations),

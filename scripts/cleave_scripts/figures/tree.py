@@ -22,6 +22,9 @@ NOT_MEASURED = ("", "-", "nan", "inf", "-inf")
 PARTS = ("options", "option_about", "build", "machine", "result")  # of a manifest, each an object
 
 
+CLAIMS_FILE, COUNTS = "hidden_choices_claims.csv", ("holds", "fails", "cannot_tell")
+
+
 class NoData(Exception):
     """Something cannot be drawn; the text says what is missing."""
 
@@ -41,15 +44,16 @@ class Tree:
     directory: pathlib.Path
     experiments: list
     ladder: object  # data frame of ladder.csv, or None
+    claims: object  # of hidden_choices_claims.csv, or None
     messages: list  # what the reader of the report has to know, one line each
 
 
 def read_tree(directory):
-    """Everything below a directory: any number of steps.csv, and one ladder.csv."""
+    """Everything below a directory: any number of steps.csv, and one ladder.csv; in it, what is known of hidden choices."""
     directory = pathlib.Path(directory)
     if not directory.is_dir():
         raise ResultError(f"{directory}: no such directory")
-    tree = Tree(directory, [], None, [])
+    tree = Tree(directory, [], None, None, [])
     steps, ladders = sorted(directory.rglob("steps.csv")), sorted(directory.rglob("ladder.csv"))
     if not steps and not ladders:
         raise ResultError(f"{directory}: neither steps.csv nor ladder.csv in it or below")
@@ -60,6 +64,9 @@ def read_tree(directory):
     if ladders:
         tree.ladder = _attempt(tree, _read_ladder, ladders[0])
         tree.messages += [f"{path}: left out, the ladder is taken from {ladders[0]}" for path in ladders[1:]]
+    claims = directory / CLAIMS_FILE
+    if claims.is_file():
+        tree.claims = _attempt(tree, _read_claims, claims)
     return tree
 
 
@@ -137,6 +144,18 @@ def _read_ladder(path, tree):
     rows, notes = load_steps(path, ("rung", "parameter", "value", "solver", "status"))
     tree.messages += notes
     return pandas.DataFrame(rows) if rows else None
+
+
+def _read_claims(path, tree):
+    """Frame of what scripts/hidden_choices wrote; counts are numbers."""
+    rows, notes = load_steps(path, ("claim", "row", "by", "max_bodies", "order", *COUNTS))
+    tree.messages += notes
+    if not rows:
+        return None
+    frame = pandas.DataFrame(rows)
+    for column in ("max_bodies", *COUNTS):
+        frame[column] = [row.integer(column) for row in rows]
+    return frame
 
 
 def need(frame, *columns):

@@ -20,6 +20,11 @@ def load_manifest(directory):
     return manifest
 
 
+def processor(manifest):
+    """What it ran on: times of two are not averaged."""
+    return manifest.get("machine", {}).get("cpu_model", "unknown")
+
+
 def machine(manifest):
     """One line about where a run was made: processor, cores, threads, commit."""
     if not manifest:

@@ -102,6 +102,12 @@ def input_path(text):
     return pathlib.Path(text)
 
 
+def input_file(text):
+    if not text or not os.path.isfile(text):
+        raise _wrong(text, "a file to read: " + ("it is a directory" if os.path.isdir(text) else "no such file"))
+    return pathlib.Path(text)
+
+
 def input_directory(text):
     if not text or not os.path.isdir(text):
         raise _wrong(text, "a directory to read: " + ("it is a file" if os.path.exists(text) else "no such directory"))

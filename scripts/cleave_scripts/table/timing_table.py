@@ -13,7 +13,7 @@ from cleave_scripts.table.cells import Cell, SceneTable, Times
 
 NEEDED = ("scene", "seed", "step", "partitioner", "refiner", "solver", "threads", "status", "t_s_ms",
           "t_pr_ms")
-SAME_RUN = ("solver", "threads", "steps")  # besides what the setup is
+SAME_RUN = ("solver", "threads", "steps", "machine")  # besides what the setup is; the last from the manifest
 NOT_A_PARAMETER = "-"  # the value of a column that does not apply to a row
 UNKNOWN = "unknown"  # the value of a column that a file does not have
 # What else is looked at where it is there.
@@ -45,7 +45,7 @@ def _scene_table(scene, rows, paper, setup):
         _check_same(scene, rows, column)
     steps = {(row["seed"], row["step"]) for row in rows}
     cells = [_cell(scene, names, mine, len(steps), paper) for names, mine in _by_combination(rows).items()]
-    _mark_lowest(scene, cells, paper)
+    mark_lowest(scene, cells, paper)
     return SceneTable(scene, len(steps), rows[0]["threads"], rows[0]["solver"], cells, _differences(scene, rows))
 
 
@@ -120,7 +120,7 @@ def waiting_share(rows):
     return math.fsum(row.number("t_s_waiting_ms") for row in known) / total if total > 0 else math.nan
 
 
-def _mark_lowest(scene, cells, paper):
+def mark_lowest(scene, cells, paper):
     """The lowest total of the complete cells, and of all that the paper has of the scene."""
     least = min((cell.ours.total_ms for cell in cells if cell.complete), default=math.nan)
     least_of_paper = min((sum(paper[key]) for key in paper if key[0] == scene), default=math.nan)

@@ -1,0 +1,1 @@
+"""Here a campaign becomes jobs of a cluster."""
