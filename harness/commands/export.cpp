@@ -136,6 +136,8 @@ void check_matrix(const ExportOptions& options, const ExportFormat& format) {
 }
 
 void check_partition(const ExportOptions& options, const ExportFormat& format) {
+  if (options.partition && options.partition->empty())
+    throw std::invalid_argument("--partition: '' is no label; name one that the file stores");
   if (options.partition && !format.has_partition)
     throw std::invalid_argument("--partition: --format " + std::string(format.name) +
                                 " writes all that there are; leave it out");

@@ -9,6 +9,7 @@ import pandas
 from stand_in import StandInCase
 from synthetic import ROOT, good_row, write_manifest, write_steps
 
+from cleave_scripts.figures import hidden_claims
 from cleave_scripts.figures.tree import read_tree
 from cleave_scripts.measurements import hidden_choices
 from cleave_scripts.measurements.hidden_choices import BFS, CUT, MIX, MR, TIME, Setting, Settings
@@ -81,7 +82,7 @@ class HiddenChoicesTest(unittest.TestCase):
         self.assertEqual(set(hidden_choices.fits(Settings(flat), PAPER)["mean"]), {0.0})
 
     def test_claims_hold_where_the_papers_numbers_stand(self):
-        claims = hidden_choices.claim_rows(self.found, self.rows, PAPER)
+        claims = hidden_claims.claim_rows(self.found, self.rows, PAPER)
         mine = claims[(claims["claim"] == "FM and KL reduce t_s on Log Tower by about 31 % and 12 %") & (claims["row"] == "mindp + fm, said 31 %")]
         self.assertEqual(set(mine["fails"]), {0})
         self.assertEqual(mine[mine["by"] == CUT]["holds"].sum(), 72)
@@ -91,7 +92,7 @@ class HiddenChoicesTest(unittest.TestCase):
         self.assertEqual((consistent["holds"].sum(), consistent["fails"].sum()), (4 * 2 * 3, 72 - 4 * 2 * 3))
 
     def test_the_worst_part_is_judged_by_its_own_column(self):
-        claims = hidden_choices.claim_rows(self.found, self.rows, PAPER)
+        claims = hidden_claims.claim_rows(self.found, self.rows, PAPER)
         mine = claims[claims["claim"] == "mr avoids badly conditioned subsystems"].groupby("row")[["holds", "fails"]].sum()
         self.assertEqual(mine.loc["Large Rock Pile: part_mass_ratio_max, largest over the steps"].tolist(), [72, 0])
         self.assertEqual(mine.loc["Large Rock Pile: part_condition_max, largest over the steps"].tolist(), [0, 72])
@@ -100,8 +101,8 @@ class HiddenChoicesTest(unittest.TestCase):
     def test_where_nothing_is_cut_nobody_can_tell(self):
         whole = hidden_choices.means(hidden_choices.rows_of(experiments(
             [cell_rows(scene, 25, "scene", solver, lambda *_: 0) for scene in SCENES for solver in ("schur", "pivot:schur-bodies")])))
-        claim = next(claim for claim in hidden_choices.judged_claims(PAPER) if claim.row == "mindp + fm, said 31 %")
-        self.assertEqual(hidden_choices.outcome_by_cut(claim, Settings(whole), Setting(25, "scene", "bfs", "mr", "mix")), "cannot_tell")
+        claim = next(claim for claim in hidden_claims.judged_claims(PAPER) if claim.row == "mindp + fm, said 31 %")
+        self.assertEqual(hidden_claims.outcome_by_cut(claim, Settings(whole), Setting(25, "scene", "bfs", "mr", "mix")), "cannot_tell")
 
     def test_rows_that_are_not_ok_are_refused(self):
         cells = campaign()

@@ -4,6 +4,7 @@ import pathlib
 
 from synthetic import good_row, write_manifest, write_steps
 
+from cleave_scripts.figures.tree import CLAIMS_FILE
 from cleave_scripts.results.paper import PARTITIONERS, REFINERS, SCENES, load_paper_table1
 
 PAPER = load_paper_table1()
@@ -78,13 +79,19 @@ def whole_system(solver, **changes):
     return rows_of("rock_pile", ("-",), ("-",), solver=solver, kernel=solver, **changes)
 
 
+def write_claims(directory):
+    """hidden_choices_claims.csv, of two claims."""
+    directory = pathlib.Path(directory)
+    directory.mkdir(parents=True, exist_ok=True)
+    (directory / CLAIMS_FILE).write_text("claim,row,by,max_bodies,order,holds,fails,cannot_tell\n" + "".join(
+        f"Claim {claim},part,{by},{size},{order},{claim + size // 10},{4 - claim},{claim}\n" for claim in (1, 2) for by in ("cut", "time")
+        for size in (10, 25) for order in ("scene", "random")))
+
+
 def write_tree(directory):
     """Four scenes, a two-thread run, three sizes, four solvers in four runs, a ladder, and what hidden choices do to two claims."""
     directory = pathlib.Path(directory)
-    directory.mkdir(parents=True, exist_ok=True)
-    (directory / "hidden_choices_claims.csv").write_text("claim,row,by,max_bodies,order,holds,fails,cannot_tell\n" + "".join(
-        f"Claim {claim},part,{by},{size},{order},{claim + size // 10},{4 - claim},{claim}\n" for claim in (1, 2) for by in ("cut", "time")
-        for size in (10, 25) for order in ("scene", "random")))
+    write_claims(directory)
     for scene in SCENES:
         write_run(directory / scene, rows_of(scene))
     write_run(
