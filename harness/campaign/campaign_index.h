@@ -17,7 +17,7 @@ inline constexpr const char* kCellsFolder = "cells";
 inline constexpr const char* kFailedFolder = "failed";
 inline constexpr const char* kShardsFolder = "shards";
 inline constexpr const char* kSlurmFolder = "slurm";  // what scripts/slurm/submit keeps there: no result
-inline constexpr const char* kMergedTable = "results.csv";  // in it, of cleave collect
+inline constexpr const char* kMergedTable = "results.csv";  // in DIR or in that folder, of cleave collect
 inline constexpr const char* kPending =
     "pending";  // status of a cell that has not been run, or not to its end
 

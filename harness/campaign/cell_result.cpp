@@ -126,14 +126,19 @@ fs::path log_path(const fs::path& out, const IndexRow& row) {
   return out / kFailedFolder / (row.cell + ".log");
 }
 
-bool still_stands(const fs::path& out, const IndexRow& row) {
-  if (row.is_pending()) return false;
-  const auto is_file_of = [](const fs::path& path, const std::string& sum) {
+std::optional<fs::path> changed_file(const fs::path& out, const IndexRow& row) {
+  const auto is_changed = [](const fs::path& path, const std::string& sum) {
     std::error_code none;
-    return fs::is_regular_file(path, none) ? sha256_of(path) == sum : sum == "-";
+    return fs::is_regular_file(path, none) ? sha256_of(path) != sum : sum != "-";
   };
-  return is_file_of(out / kCellsFolder / row.cell / kChecksumsFile, row.checksums) &&
-         is_file_of(log_path(out, row), row.log);
+  for (const auto& [path, sum] : {std::pair(out / kCellsFolder / row.cell / kChecksumsFile, row.checksums),
+                                  {log_path(out, row), row.log}})
+    if (is_changed(path, sum)) return path;
+  return std::nullopt;
+}
+
+bool still_stands(const fs::path& out, const IndexRow& row) {
+  return !row.is_pending() && !changed_file(out, row);
 }
 
 void take_failure(const CellEnd& end, std::optional<double> limit_s, IndexRow& row) {

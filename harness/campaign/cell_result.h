@@ -33,6 +33,9 @@ std::optional<IndexRow> complete_row(const std::filesystem::path& out, const Cam
 // Where the log of a cell that failed lies.
 std::filesystem::path log_path(const std::filesystem::path& out, const IndexRow& row);
 
+// Of a row's two files that stand for its cell, checksums and log, the first that is not as the row says; nothing where both are.
+std::optional<std::filesystem::path> changed_file(const std::filesystem::path& out, const IndexRow& row);
+
 // Whether an index may be believed about a cell that has ended: the checksums in its directory, which vouch for all else
 // there, and its log are those of the row.
 bool still_stands(const std::filesystem::path& out, const IndexRow& row);

@@ -55,11 +55,20 @@ void check_spec(const fs::path& out, const fs::path& share, const std::vector<In
   list.add(wrong.empty(), (share / kIndexFile).string(), "has the cells of spec.toml" + wrong);
 }
 
+// What may lie beside the index, besides the files that the checksums beside it name.
+std::vector<std::string> others_beside_index(const fs::path& out) {
+  std::vector<std::string> names = {kCellsFolder, kFailedFolder, kShardsFolder, kSlurmFolder};
+  if (!fs::exists(out / kMergedTable)) return names;
+  const CollectedTables merged(out / kMergedTable);
+  for (const fs::path& table : merged.tables()) names.push_back(table.filename().string());
+  names.push_back(merged.checksums.filename().string());
+  return names;
+}
+
 void read_share(const fs::path& out, const fs::path& share, Rows& rows, CheckList& list) {
-  const std::vector<std::string> folders =
-      share == out ? std::vector<std::string>{kCellsFolder, kFailedFolder, kShardsFolder, kSlurmFolder}
-                   : std::vector<std::string>{};
-  if (!check_files(share, {kIndexFile, kSpecFile}, folders, list)) return;
+  const std::vector<std::string> others =
+      share == out ? others_beside_index(out) : std::vector<std::string>{};
+  if (!check_files(share, {kIndexFile, kSpecFile}, others, list)) return;
   std::vector<IndexRow> found;
   std::string error;
   try {
@@ -99,9 +108,10 @@ void check_cell(const fs::path& out, const std::string& cell, const std::vector<
   if (std::ranges::all_of(rows, &IndexRow::is_pending))
     return list.add(false, directory.string(), "pending: the campaign is incomplete");
   const auto row = std::ranges::find_if(rows, [&](const IndexRow& one) { return still_stands(out, one); });
-  if (row == rows.end())
-    return list.add(false, directory.string(),
-                    "its checksums, or its log in failed/, are not those of the index");
+  if (row == rows.end()) {
+    const auto ended = std::ranges::find_if_not(rows, &IndexRow::is_pending);
+    return list.add(false, changed_file(out, *ended)->string(), "is not that of the index");
+  }
   if (row->log == "-") {
     verify_directory(directory, list);
     check_row(out, *row, list);
@@ -132,10 +142,10 @@ void check_shares(const fs::path& out, const std::vector<fs::path>& shares, Chec
     for (const std::string& name : names_in(out / kShardsFolder))
       if (std::ranges::count(shares, out / kShardsFolder / name) == 0)
         others += "; " + name + " has no index";
+  const std::vector<std::string> known = others_beside_index(out);
   if (!fs::exists(out / kIndexFile))
     for (const std::string& name : names_in(out))
-      if (name != kShardsFolder && name != kCellsFolder && name != kFailedFolder && name != kSlurmFolder)
-        others += "; " + name + " is not of this campaign";
+      if (std::ranges::count(known, name) == 0) others += "; " + name + " is not of this campaign";
   list.add(others.empty(), out.string(), "holds a campaign and nothing else" + others);
 }
 
@@ -159,8 +169,8 @@ void verify_campaign(const fs::path& directory, CheckList& list) {
   for (const auto& [cell, of_cell] : rows) check_cell(directory, cell, of_cell, list);
   check_names(directory / kCellsFolder, "", rows, list);
   check_names(directory / kFailedFolder, ".log", rows, list);
-  if (const fs::path merged = directory / kSlurmFolder / kMergedTable; fs::exists(merged))
-    check_collected_tables(merged, list);
+  for (const fs::path& merged : {directory / kMergedTable, directory / kSlurmFolder / kMergedTable})
+    if (fs::exists(merged)) check_collected_tables(merged, list);
 }
 
 }  // namespace cleave

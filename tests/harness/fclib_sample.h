@@ -8,6 +8,7 @@ extern "C" {
 }
 
 #include <Eigen/Dense>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 
@@ -64,7 +65,10 @@ inline StepProblem fclib_sample(int bodies, int tangents, std::uint64_t seed) {
 }
 
 struct DeleteGlobal {
-  void operator()(fclib_global* global) const { fclib_delete_global(global); }
+  void operator()(fclib_global* global) const {
+    fclib_delete_global(global);  // what it points to, and not itself
+    std::free(global);
+  }
 };
 using GlobalOfLibrary = std::unique_ptr<fclib_global, DeleteGlobal>;
 

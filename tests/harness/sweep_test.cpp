@@ -565,16 +565,22 @@ TEST(SweepVerify, FindsEveryDamagedByteOfACampaign) {
   EXPECT_EQ(campaign.failures(), "");
 }
 
-// The table that the last job of a cluster leaves.
-TEST(SweepVerify, LooksAtTheMergedTable) {
+// The tables that the last job of a cluster leaves, and those that a user puts beside the index.
+TEST(SweepVerify, LooksAtTheMergedTables) {
   const Campaign campaign(kTiny);
   ASSERT_EQ(campaign.sweep().exit_code, 0);
   fs::create_directory(campaign.out() / "slurm");
-  const fs::path table = campaign.out() / "slurm/results.csv";
-  ASSERT_EQ(run_cleave({"collect", campaign.out(), "--out", table}).exit_code, 0);
-  EXPECT_EQ(campaign.failures(), "");
-  flip_byte(table, 1000);
-  EXPECT_NE(campaign.failures().find("results.csv: sha256 "), std::string::npos);
+  for (const char* name : {"results.csv", "slurm/results.csv"}) {
+    SCOPED_TRACE(name);
+    const fs::path table = campaign.out() / name;
+    ASSERT_EQ(run_cleave({"collect", campaign.out(), "--out", table}).exit_code, 0);
+    EXPECT_EQ(campaign.failures(), "");
+    flip_byte(table, 1000);
+    EXPECT_NE(campaign.failures().find(std::string(name) + ": sha256 "), std::string::npos);
+    flip_byte(table, 1000);
+  }
+  fs::remove(campaign.out() / "results.csv");
+  EXPECT_NE(campaign.failures().find("results.cells.csv is not of this run"), std::string::npos);
 }
 
 TEST(SweepVerify, FindsAnIndexThatSaysSomethingElse) {
@@ -632,7 +638,7 @@ TEST(SweepVerify, EveryCheckOfTheTableCanFail) {
          std::ofstream(c.out() / "index.csv") << text;
          seal_again(c.out());
        }},
-      {"vouched for", "are not those of the index",
+      {"vouched for", "is not that of the index",
        [](const Campaign& c) { fs::rename(c.cell(1), c.path() / "moved"); }},
       {"row of a cell", "is as the index says; its directory gives ",
        [](const Campaign& c) {

@@ -23,7 +23,8 @@ PROGRAM = os.environ["CLEAVE_PROGRAM"]
 HONEST = str(pathlib.Path(PROGRAM).resolve())
 MISBEHAVING = pathlib.Path(__file__).resolve().parent / "misbehaving"
 QUICK = {"problem-files": 60, "problem-flips": 15, "flips": 15, "edits": 15, "kills": 5, "interrupts": 3, "two-processes": 3,
-         "full-disk": 4, "low-memory": 6, "streams": 6, "command-lines": 30, "random-runs": 6}
+         "full-disk": 4, "low-memory": 6, "streams": 6, "command-lines": 30, "campaign-flips": 20,
+         "campaign-kills": 2, "random-runs": 6}
 A_LONG_RUN = 51  # a seed whose first interrupt comes when the program has long begun
 LOST = "crashes with SIGSEGV", "crashes with SIGABRT"
 
@@ -80,7 +81,7 @@ class MisbehavingTest(TortureCase):
             self.assertIn(words, " ".join(result["kinds"][kind]["found"]), (misbehaviour, kind))
 
     def test_crashes(self):
-        self.check("crash", {kind.name: LOST[0] for kind in KINDS if kind.name not in ("kills", "interrupts", "full-disk")})
+        self.check("crash", {kind.name: LOST[0] for kind in KINDS if kind.name not in ("kills", "interrupts", "full-disk", "campaign-kills")})
 
     def test_hangs(self):
         self.check("hang", dict.fromkeys(("problem-files", "low-memory", "random-runs"), "hangs"), "--patience", 1, count=1)
@@ -99,7 +100,12 @@ class MisbehavingTest(TortureCase):
 
     def test_damage_that_is_believed(self):
         self.check("believe", {"problem-files": "verify: exit code 0", "problem-flips": "believes a problem file",
-                               "flips": "believes a flip", "edits": "believes"}, count=12)
+                               "flips": "believes a flip", "edits": "believes", "campaign-flips": "believes a flip"}, count=12)
+
+    def test_campaigns_that_lose_a_cell(self):
+        if full_disk.missing():
+            self.skipTest(full_disk.missing())
+        self.check("lose_a_cell", {"campaign-kills": "not every cell is there once and ok"}, count=1)
 
     def test_good_results_that_are_refused(self):
         self.check("doubt", {"random-runs": "verify: exit code 1", "two-processes": "verify: exit code 1",
@@ -122,6 +128,7 @@ class MisbehavingTest(TortureCase):
             self.skipTest(full_disk.missing())
         self.check("crash_on_failure", {"full-disk": LOST[0]}, count=6)
         self.check("blame_nobody", {"full-disk": "does not name file and cause"}, count=6)
+        self.check("blame_nobody", {"campaign-kills": "does not name the cause"}, count=1)
 
     def test_little_memory(self):
         self.check("crash_with_little_memory", {"low-memory": LOST[1]})

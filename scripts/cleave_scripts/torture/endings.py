@@ -3,7 +3,8 @@ import re
 import signal
 
 DONE, BAD_INPUT, ROWS_FAILED, CHECK_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
-INFORMATION = re.compile(r": problem of .*, hash [0-9a-f]{16}$")  # what verify says of a good file, before a bad one
+# What verify says of a good file, before a bad one, and what a command says that takes over the lock of a killed one.
+INFORMATION = re.compile(r": problem of .*, hash [0-9a-f]{16}$|: left by process \d+ .*; taken over$")
 PROGRESS = re.compile(r"^\w+: step \d+ of \d+, \d+ s, about \d+ s to go$")  # of what had taken long
 ALARMS = ("Traceback (most recent call last)", "AddressSanitizer", "ThreadSanitizer", "runtime error:", "terminate called",
           "Assertion", "HDF5-DIAG", "free(): invalid", "malloc():", "double free")

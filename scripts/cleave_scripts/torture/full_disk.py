@@ -1,4 +1,5 @@
 """An output directory on a disk of random small size: one error line that names file and cause, and no half files."""
+import contextlib
 import shutil
 import subprocess
 import tempfile
@@ -32,20 +33,36 @@ def _unmount(place):
         subprocess.run(["umount", "--lazy", str(place)], check=True, capture_output=True)
 
 
-def trial(trial):
-    name, words, undisturbed = choose(trial)
-    whole_kb = sum(path.stat().st_size for path in undisturbed.directory.iterdir()) // 1024
-    size_kb = PAGE_KB * trial.random.randrange(1, max(2, int(1.5 * whole_kb) // PAGE_KB))
+@contextlib.contextmanager
+def small_disk(trial, size_kb):
+    """The directory of a disk of this size; what lies on it is kept where the trial has found something."""
     disk = trial.directory / "disk"
     disk.mkdir()
     trial.note(f"$ mount -t tmpfs -o size={size_kb}k tmpfs disk")
     _mount(disk, size_kb)
     try:
-        _fill(trial, name, words)
+        yield disk
     finally:
         if trial.findings:
             shutil.copytree(disk, trial.directory / "left")
         _unmount(disk)
+
+
+def enlarge(trial, disk, size_kb):
+    trial.note(f"$ mount -o remount,size={size_kb}k disk")
+    subprocess.run(["mount", "-o", f"remount,size={size_kb}k", str(disk)], check=True, capture_output=True)
+
+
+def random_size_kb(trial, whole_kb):
+    """Of a disk on which so many kB do not always fit."""
+    return PAGE_KB * trial.random.randrange(1, max(2, int(1.5 * whole_kb) // PAGE_KB))
+
+
+def trial(trial):
+    name, words, undisturbed = choose(trial)
+    whole_kb = sum(path.stat().st_size for path in undisturbed.directory.iterdir()) // 1024
+    with small_disk(trial, random_size_kb(trial, whole_kb)):
+        _fill(trial, name, words)
 
 
 def _fill(trial, name, words):

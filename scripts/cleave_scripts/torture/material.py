@@ -5,7 +5,7 @@ import pathlib
 import time
 
 from cleave_scripts.results.errors import ResultError
-from cleave_scripts.torture import child
+from cleave_scripts.torture import campaigns, child
 
 SECONDS = 600
 SCENES = (
@@ -61,6 +61,16 @@ class Material:
             "run": self._make("run", RUN),
             "run --record-motion": self._make("motion", (*RUN, "--record-motion")),
         }
+
+    @functools.cached_property
+    def campaign(self):
+        """The directory of one of many cells."""
+        return campaigns.make(self.program, self.directory)
+
+    @functools.cached_property
+    def mixed_campaign(self):
+        """The directory of one that has all kinds of files."""
+        return campaigns.make_mixed(self.program, self.directory)
 
     def _make(self, name, words):
         out = self.directory / name

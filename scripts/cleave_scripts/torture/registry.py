@@ -2,8 +2,8 @@
 import dataclasses
 import typing
 
-from cleave_scripts.torture import (command_lines, edits, flips, full_disk, interrupts, kills, low_memory, problem_files,
-                                    problem_flips, random_runs, streams, two_processes)
+from cleave_scripts.torture import (campaign_flips, campaign_kills, command_lines, edits, flips, full_disk, interrupts, kills, low_memory,
+                                    problem_files, problem_flips, random_runs, streams, two_processes)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -28,5 +28,8 @@ KINDS = (
     Kind("low-memory", "30 MB to 1 GB of address space", low_memory.trial),
     Kind("streams", "standard streams that are closed or full", streams.trial),
     Kind("command-lines", "words of a command line wrong, missing, doubled or moved", command_lines.trial),
+    Kind("campaign-flips", "a byte or bit flipped in any file of a campaign, which verify names", campaign_flips.trial),
+    Kind("campaign-kills", "SIGKILL of a campaign of 200 cells, ten times, on a small disk too; the command completes it",
+         campaign_kills.trial, 1, full_disk.missing),
     Kind("random-runs", "random scenes, options and combinations, every row judged", random_runs.trial, 3),
 )
