@@ -61,10 +61,15 @@ class Expansion {
       check_size(read_grid(*rule->as_table(), file_, known_), *rule);
     check_size(grid, spec);
     const bool has_cells = find_dimension(grid, "scene") != nullptr;
-    std::vector<Options> found = has_cells ? product(grid) : std::vector<Options>();
-    for (const toml::node* rule : rules(spec, "exclude")) exclude(*rule->as_table(), grid, found);
-    for (const Options& options : found) add(options, grid, spec);
+    read_exclusions(spec, grid);
+    if (has_cells) {
+      std::vector<Options> found = product(grid);
+      exclude(found);
+      for (const Options& options : found) add(options, grid, spec);
+    }
     for (const toml::node* rule : rules(spec, "include")) include(*rule->as_table(), grid);
+    for (const Exclusion& exclusion : exclusions_)
+      if (exclusion.removed == 0) reject_at(file_, exclusion.rule->source(), "exclude", "removes no cell");
     if (cells_.empty())
       throw std::invalid_argument(
           file_ + ": has no cell" +
@@ -90,20 +95,32 @@ class Expansion {
                 "makes more than " + std::to_string(kMostCells) + " cells");
   }
 
-  void exclude(const toml::table& rule, const Grid& grid, std::vector<Options>& found) const {
-    const Grid unwanted = read_grid(rule, file_, known_);
-    if (unwanted.empty())
-      reject_at(file_, rule.source(), "exclude", "has no key and would remove every cell");
-    for (const Dimension& dimension : unwanted)
-      if (find_dimension(grid, dimension.key) == nullptr)
-        reject_at(file_, dimension.source, dimension.key,
-                  "is no key of the cells, so that nothing is excluded by it");
-    const auto is_unwanted = [&](const Options& options) {
-      return std::ranges::all_of(unwanted, [&](const Dimension& dimension) {
-        return std::ranges::count(dimension.values, options.at(dimension.key)) > 0;
+  struct Exclusion {
+    const toml::node* rule;
+    Grid unwanted;
+    std::size_t removed = 0;
+  };
+
+  void read_exclusions(const toml::table& spec, const Grid& grid) {
+    for (const toml::node* rule : rules(spec, "exclude")) {
+      const Grid unwanted = read_grid(*rule->as_table(), file_, known_);
+      if (unwanted.empty())
+        reject_at(file_, rule->source(), "exclude", "has no key and would remove every cell");
+      for (const Dimension& dimension : unwanted)
+        if (find_dimension(grid, dimension.key) == nullptr)
+          reject_at(file_, dimension.source, dimension.key,
+                    "is no key of the cells, so that nothing is excluded by it");
+      exclusions_.push_back({rule, unwanted});
+    }
+  }
+
+  void exclude(std::vector<Options>& found) {
+    for (Exclusion& exclusion : exclusions_)
+      exclusion.removed += std::erase_if(found, [&](const Options& options) {
+        return std::ranges::all_of(exclusion.unwanted, [&](const Dimension& dimension) {
+          return std::ranges::count(dimension.values, options.at(dimension.key)) > 0;
+        });
       });
-    };
-    if (std::erase_if(found, is_unwanted) == 0) reject_at(file_, rule.source(), "exclude", "removes no cell");
   }
 
   void include(const toml::table& rule, const Grid& grid) {
@@ -115,7 +132,9 @@ class Expansion {
         own.push_back(dimension);
     check_size(own, rule);
     const std::size_t before = cells_.size();
-    for (const Options& options : product(own)) add(options, own, rule);
+    std::vector<Options> found = product(own);
+    if (takes_lists) exclude(found);
+    for (const Options& options : found) add(options, own, rule);
     if (cells_.size() == before)
       reject_at(file_, rule.source(), "include", "adds no cell that is not there already");
   }
@@ -173,6 +192,7 @@ class Expansion {
 
   const std::string& file_;
   std::vector<std::string> known_;
+  std::vector<Exclusion> exclusions_;
   std::vector<CampaignCell> cells_;
   std::map<std::string, Maker> makers_;  // by the name of the cell, who made it
 };

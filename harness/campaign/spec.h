@@ -13,7 +13,7 @@
 //
 // A cell that an [[include]] makes and that is there already is the same cell.
 //
-// Without `scene` the keys of the file make no cells by themselves and hold in every [[include]], lists too.
+// Without `scene` the keys of the file make no cells by themselves and hold in every [[include]], lists too, and so do its exclusions.
 // Cells stand in the order of the product, the key written last varying fastest, then those of every [[include]]; a round is all
 // of them, so that what drifts meanwhile meets all cells alike.
 #pragma once

@@ -102,6 +102,19 @@ TEST(CampaignSpec, WithoutASceneTheKeysAreForWhatIsIncluded) {
   EXPECT_EQ(column(cells, "mu"), Words(5, "0.3"));
 }
 
+TEST(CampaignSpec, WithoutASceneExclusionsAreOfWhatIsIncluded) {
+  const std::string two = "[[include]]\nscene = 'rock_pile'\n[[include]]\nscene = 'log_tower'\nseed = 7\n";
+  const auto cells = cells_of("seed = [1, 2]\nmu = [0.3, 0.4]\n[[exclude]]\nseed = [2, 7]\nmu = 0.4\n" + two);
+  EXPECT_EQ(column(cells, "seed"), Words({"1", "1", "2", "7"}));
+  EXPECT_EQ(column(cells, "mu"), Words({"0.3", "0.4", "0.3", "0.3"}));
+  try {
+    cells_of("seed = [1, 2]\n[[exclude]]\nseed = 3\n" + two);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("exclude: removes no cell"), std::string::npos) << error.what();
+  }
+}
+
 TEST(CampaignSpec, RoundsAreInterleaved) {
   const auto cells = cells_of("rounds = 2\n" + kRocks + "bodies = [10, 20]\n");
   EXPECT_EQ(column(cells, "bodies"), Words({"10", "20", "10", "20"}));

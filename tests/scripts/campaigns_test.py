@@ -17,7 +17,7 @@ from cleave_scripts.results.paper import REFINERS, SCENES
 
 PROGRAM = os.environ.get("CLEAVE_PROGRAM", ROOT / "build" / "release" / "cleave")
 FOLDER = SCRIPTS / "data" / "campaigns"
-DEFAULTS = {"dt": 1 / 60, "cfm": 1e-5, "erp": 0.2, "mu": 0.5, "copies": 1, "contact-cap": 8}
+DEFAULTS = {"friction": "box", "dt": 1 / 60, "cfm": 1e-5, "erp": 0.2, "mu": 0.5, "copies": 1, "contact-cap": 8}
 
 
 def sweep(*words):
@@ -47,10 +47,12 @@ def key(options):
     return frozenset((name, value) for name, value in values.items() if DEFAULTS.get(name) != value)
 
 
-def climber_text(climber):
-    """As one name: pgs@sweeps=20."""
+def climber_options(climber):
+    """Its solver as one name, pgs@sweeps=20, and the friction model."""
     words = iter(climber.get("options", ()))
-    return climber["solver"] + "".join(f"@{name.removeprefix('--')}={value}" for name, value in zip(words, words))
+    given = {name.removeprefix("--"): value for name, value in zip(words, words)}
+    friction = given.pop("friction", "box")
+    return {"solver": climber["solver"] + "".join(f"@{name}={value}" for name, value in given.items()), "friction": friction}
 
 
 class CampaignsTest(unittest.TestCase):
@@ -74,7 +76,7 @@ class CampaignsTest(unittest.TestCase):
     def test_ladder_has_every_value_of_every_rung_and_every_climber(self):
         same = {"mode": "separate", "partitioner": "mindp", "refiner": "none", "steps": "600", "repeats": "1"}
         wanted = {
-            key({**same, "scene": rung.scene, "solver": climber_text(climber), **rung.settings(value)})
+            key({**same, "scene": rung.scene, **climber_options(climber), **rung.settings(value)})
             for rung in RUNGS for value in rung.values for climber in CLIMBERS.values()
         }
         found = [key(cell) for cell in cells("ladder")]

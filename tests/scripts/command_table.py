@@ -92,6 +92,7 @@ COMMANDS = {
     "setup": Command({"--preset": "preset", "--target": "target"}),
     "table1": Command({"--format": "format", "--where": "condition"}, ("{tree}",), ("{tree}",), ("{tree}",)),
     "test": Command({"--preset": "preset"}, passes_on=True),
+    "friction_models": Command({"--scene": "scenes", "--steps": "count", **MEASURED}, runs=True),
     "hidden_choices": Command({"--spec": "input file", "--report": "output directory", **MEASURED}, runs=True),
     "slurm/submit": Command({"--tasks": "count", "--dry-run": "", "--out": "output directory"},
                             ("{file}", "--tasks=1", "--out={out}"), runs=True),

@@ -124,16 +124,24 @@ hidden_choices_test.write_campaign(pathlib.Path(given["--out"]))
 
 
 def write_campaign(directory):
-    """As `cleave sweep` leaves it."""
-    for number, rows in enumerate(campaign((25,), ("scene",))):
+    """As `cleave sweep` leaves it, with a cell of an earlier spec that would double a scene's rows."""
+    index = ["cell,number"]
+    cells = campaign((25,), ("scene",))
+    for number, rows in enumerate([*cells, [dict(row, interface_rows=10**6) for row in cells[0]]], 1):
         cell = pathlib.Path(directory) / "cells" / f"cell{number}"
         write_steps(cell, rows)
         write_manifest(cell, options={})
+        index.append(f"cell{number},{number if number <= len(cells) else 0}")
+    (pathlib.Path(directory) / "index.csv").write_text("\n".join(index) + "\n")
 
 
 class CommandTest(StandInCase):
     stand_in = STAND_IN
     script = "hidden_choices"
+
+    def rows(self, path):
+        with open(path, newline="") as file:
+            return list(csv.DictReader(file))
 
     def test_files_and_what_the_report_takes(self):
         self.run_it("--report", self.directory / "report")
@@ -141,8 +149,8 @@ class CommandTest(StandInCase):
         self.assertTrue(call.startswith("sweep ") and "hidden-choices.toml --out" in call, call)
         out = self.directory / "out"
         for name in ("hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv"):
-            with open(out / name, newline="") as file:
-                self.assertGreater(len(list(csv.DictReader(file))), 10, name)
+            self.assertGreater(len(self.rows(out / name)), 10, name)
+        self.assertLess(max(float(row["interface_rows"]) for row in self.rows(out / "hidden_choices.csv")), 10**5)
         self.assertTrue((out / "verdict_map.png").read_bytes().startswith(b"\x89PNG"))
         self.assertEqual((self.directory / "report" / "hidden_choices_claims.csv").read_bytes(), (out / "hidden_choices_claims.csv").read_bytes())
         (self.directory / "report" / "run").mkdir()

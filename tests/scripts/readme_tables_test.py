@@ -7,7 +7,7 @@ import unittest
 import stored_data
 from synthetic import ROOT, SCRIPTS, run_script
 
-from cleave_scripts.documents import accuracy, cuts, hidden, markers, paper_claims, paper_table, sets, speed, stability, worth
+from cleave_scripts.documents import accuracy, cuts, friction, hidden, markers, paper_claims, paper_table, sets, speed, stability, worth
 from cleave_scripts.documents.stored import NoResults, Stored
 from cleave_scripts.measurements import extremes_steps
 from cleave_scripts.measurements.reference_stages import STAGES
@@ -26,7 +26,7 @@ class CheckoutTest(unittest.TestCase):
 
     def test_every_part_stands_in_a_document_and_every_document_has_one(self):
         found = [markers.names((ROOT / name).read_text()) for name in DOCUMENTS]
-        modules = (accuracy, cuts, hidden, paper_claims, paper_table, sets, speed, stability, worth)
+        modules = (accuracy, cuts, friction, hidden, paper_claims, paper_table, sets, speed, stability, worth)
         self.assertEqual(sorted(sum(found, [])), sorted(name for module in modules for name in module.BLOCKS))
         self.assertTrue(all(found))
 

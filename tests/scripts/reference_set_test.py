@@ -58,18 +58,30 @@ class ReferenceSetTest(unittest.TestCase):
             self.assertTrue((RESULTS / name).exists(), f"results/provenance.json names {name}, which is not there")
 
     def test_the_hostile_trials_say_themselves_what_made_them_and_found_nothing_wrong(self):
-        told = json.loads((RESULTS / "torture" / "torture.json").read_text())
-        self.assertIn("--out results/torture", told["command"])
+        for folder in ("torture", "torture/campaigns"):
+            with self.subTest(folder):
+                self.check_hostile_trials(folder)
+        self.assertEqual({path.name for path in (RESULTS / "torture").iterdir()}, {"torture.json", "torture.md", "campaigns"})
+
+    def test_a_campaign_was_killed_a_hundred_times_and_a_thousand_flips_were_found(self):
+        kinds = json.loads((RESULTS / "torture" / "campaigns" / "torture.json").read_text())["kinds"]
+        self.assertGreaterEqual(kinds["campaign-flips"]["noticed"], 1000)
+        self.assertEqual(kinds["campaign-flips"]["noticed"], kinds["campaign-flips"]["trials"])
+        self.assertGreaterEqual(kinds["campaign-kills"]["kills"], 100)
+        self.assertEqual(kinds["campaign-kills"]["restarts"], kinds["campaign-kills"]["trials"])
+
+    def check_hostile_trials(self, folder):
+        told = json.loads((RESULTS / folder / "torture.json").read_text())
+        self.assertIn(f"--out results/{folder}", told["command"])
         self.assertIn("clean", told["program"])
         self.assertTrue(told["machine"])
         self.assertEqual((told["state"], told["not_run"]), ("complete", {}))
         self.assertEqual((told["total"]["above"], told["total"]["not_judged"]), (0, 0))
-        page = (RESULTS / "torture" / "torture.md").read_text().partition("| kind | finding | times |")[2]
+        page = (RESULTS / folder / "torture.md").read_text().partition("| kind | finding | times |")[2]
         listed = [line.strip("| ").split(" | ") for line in page.splitlines()[2:]]
         self.assertEqual(sum(int(times) for *_, times in listed), told["total"]["findings"])
         for _, finding, _ in listed:  # what became of it
             self.assertIn(f'"{finding}": of the trial.', (RESULTS / "README.md").read_text())
-        self.assertEqual({path.name for path in (RESULTS / "torture").iterdir()}, {"torture.json", "torture.md"})
 
     def test_the_fuzzers_ran_for_an_hour_in_all_and_found_nothing(self):
         text = (RESULTS / "fuzz" / "README.md").read_text()

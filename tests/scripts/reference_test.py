@@ -35,6 +35,7 @@ LEFT = {
     "partition_worth": ["partition_worth.csv", "partition_worth.png"], "partition_regret": ["partition_regret.csv"],
     "modelled_workers": ["modelled_workers.csv"],
     "model_savings": ["model_savings.csv"],
+    "friction_models": ["friction_motion.csv", "friction_velocities.csv"],
     "hidden_choices": ["hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv", "verdict_map.png"],
     "tradeoff": ["tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "time_to_accuracy.png", "accuracy_profile.png"],
     "cold_starts": ["cold_starts.csv"], "ablation": ["ablation.csv"], "report": ["figures/verdicts.csv"],
@@ -105,7 +106,7 @@ class ReferenceTest(unittest.TestCase):
             "partition_benchmark.json",
             "dense_benchmark.json", "busy_machine.csv",
             "two_threads.csv", "karger.csv", "partition_over_time.csv", "partition_worth.csv", "partition_worth.png", "partition_regret.csv", "tradeoff.csv", "tradeoff_partitions.csv",
-            "tradeoff_motion.csv", "time_to_accuracy.png", "accuracy_profile.png", "model_savings.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
+            "tradeoff_motion.csv", "time_to_accuracy.png", "accuracy_profile.png", "model_savings.csv", "friction_motion.csv", "friction_velocities.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
             "verdict_map.png", "modelled_workers.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
             "report/verdicts.csv", *(f"report/scaling/bodies_50/{file}" for file in
                                      ("manifest.json", "steps.csv", "checksums")),

@@ -1,0 +1,52 @@
+"""What the cheaper friction models change, in one step and in a motion."""
+import statistics
+
+from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements.friction_of_models import IN_A_STEP, MODELS
+from cleave_scripts.table import text
+
+MADE_BY = "scripts/friction_models"
+VELOCITIES, MOTION = (("friction_velocities.csv", MADE_BY), ("friction_motion.csv", MADE_BY))
+
+
+def _of_rms(row):
+    return float(row["rms_difference_m_per_s"]) / float(row["rms_velocity_m_per_s"])
+
+
+def friction_velocities(stored):
+    rows = need(stored.table(*VELOCITIES), "friction models in a step", "status_of_law")
+    lines = []
+    for scene in dict.fromkeys(row["scene"] for row in rows):
+        for model in IN_A_STEP:
+            mine = [row for row in rows if (row["scene"], row["friction"]) == (scene, model)]
+            held = [row for row in mine if (row["status"], row["status_of_law"]) == ("ok", "ok")]
+            shares, most = [100 * _of_rms(row) for row in held], [float(row["largest_difference_m_per_s"]) for row in held]
+            lines.append([scene.replace("_", " "), model, f"{len(held)} of {len(mine)}",
+                          *(text.number(number) if held else "-" for of in (shares, most)
+                            for number in ((statistics.median(of), max(of)) if held else (0, 0)))])
+    return (f"Recorded steps of the scenes, solved by `exact` under `box` and `cone`, held against Coulomb's law in the same step, where both were "
+            f"solved: root mean square over the bodies of the difference of their velocities, as a share of the velocities' own, and the "
+            f"largest difference of one body (`{MADE_BY}`; {stored.origin(VELOCITIES[0])}):\n\n" +
+            text.table(["scene", "model", "steps", "difference, %, median", "most", "one body, m/s, median", "most"], lines))
+
+
+def friction_motion(stored):
+    rows = need(stored.table(*MOTION), "motions under the friction models", "run_out_m")
+    lines = []
+    for scene in dict.fromkeys(row["scene"] for row in rows):
+        for model in MODELS:
+            mine = [row for row in rows if (row["scene"], row["friction"]) == (scene, model)]
+            last = mine[-1]
+            passes = statistics.fmean(int(row["factorizations"]) for row in mine)
+            lines.append([scene.replace("_", " "), model, text.number(float(last["height_m"])), text.number(float(last["run_out_m"])),
+                          *(text.number(float(last[name]) / 1000) for name in ("kinetic_energy_j", "potential_energy_j")),
+                          text.number(1000 * float(last["max_penetration_m"])), text.number(passes), last["unsolved_steps"]])
+    steps = int(rows[-1]["step"]) + 1
+    return (f"The scenes after {steps} steps, each moved by `exact` under one model (`{MADE_BY}`; {stored.origin(MOTION[0])}): height of the highest "
+            "centre, horizontal distance from where the middle was within which 95 % of the mass lies, energies, deepest penetration, "
+            "factorisations of a measured step (mean), and the steps that were not solved within the limit:\n\n" +
+            text.table(["scene", "model", "height, m", "run-out, m", "kinetic energy, kJ", "potential energy, kJ", "penetration, mm",
+                        "factorisations", "unsolved steps"], lines))
+
+
+BLOCKS = {"friction_velocities": friction_velocities, "friction_motion": friction_motion}
