@@ -31,6 +31,7 @@ IndexRow unsure(const IndexRow& row) {
   pending.run_id = row.run_id;
   pending.round = row.round;
   pending.arguments = row.arguments;
+  pending.label = row.label;
   pending.run_s = pending.process_s = std::numeric_limits<double>::quiet_NaN();
   return pending;
 }
@@ -80,6 +81,7 @@ IndexRow Campaign::row_of(const CampaignCell& cell, int number, const RowsByName
     if (is_wanted && row.build == build_ && row.arguments == pending.arguments &&
         still_stands(options_.out, row)) {
       row.number = number;
+      row.label = pending.label;
       return row;
     }
   }

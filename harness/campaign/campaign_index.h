@@ -41,8 +41,10 @@ struct IndexRow {
   std::string checksums = "-";  // SHA-256 of the file checksums in its directory; - where there is none
   std::string log = "-";        // SHA-256 of its log in failed/; - where there is none
   std::string arguments;        // of cleave run
+  std::string label = "-";      // what the spec calls the cell; - where it has no label
 
   bool is_pending() const { return status == kPending; }
+  const std::string& title() const { return label == "-" ? cell : label; }
 };
 
 // The one list of columns, in order: visit(name, member).
@@ -65,6 +67,7 @@ void visit_index(Row&& row, Visit&& visit) {
   visit("checksums", row.checksums);
   visit("log", row.log);
   visit("arguments", row.arguments);
+  visit("label", row.label);
 }
 
 // Header and rows.

@@ -77,6 +77,7 @@ IndexRow pending_row(const CampaignCell& cell, int number) {
   row.round = cell.round;
   row.run_s = row.process_s = kUnknown;
   row.arguments = joined(cell.arguments(), " ");
+  if (!cell.label.empty()) row.label = cell.label;
   return row;
 }
 

@@ -6,6 +6,7 @@
 
 #include "harness/base/file_text.h"
 #include "harness/base/names.h"
+#include "harness/campaign/cell_label.h"
 #include "harness/campaign/spec_grid.h"
 #include "harness/experiment/options.h"
 #include "scenarios/scene.h"
@@ -17,7 +18,7 @@ using scene_file::reject_at;
 using Options = std::map<std::string, std::string>;
 
 constexpr int kMostRounds = 1000;
-const std::vector<std::string> kRules = {"include", "exclude", "rounds"};
+const std::vector<std::string> kRules = {"include", "exclude", "rounds", kLabelKey};
 
 // Those of `run` that a cell may choose: where it goes is the campaign's business.
 std::vector<std::string> option_names() {
@@ -58,16 +59,17 @@ class Expansion {
   std::vector<CampaignCell> cells(const toml::table& spec) {
     const Grid grid = read_grid(spec, file_, known_, kRules);
     for (const toml::node* rule : rules(spec, "include"))
-      check_size(read_grid(*rule->as_table(), file_, known_), *rule);
+      check_size(read_grid(*rule->as_table(), file_, known_, {kLabelKey}), *rule);
     check_size(grid, spec);
+    const CellLabel label(spec, file_);
     const bool has_cells = find_dimension(grid, "scene") != nullptr;
     read_exclusions(spec, grid);
     if (has_cells) {
       std::vector<Options> found = product(grid);
       exclude(found);
-      for (const Options& options : found) add(options, grid, spec);
+      for (const Options& options : found) add(options, grid, spec, label);
     }
-    for (const toml::node* rule : rules(spec, "include")) include(*rule->as_table(), grid);
+    for (const toml::node* rule : rules(spec, "include")) include(*rule->as_table(), grid, label);
     for (const Exclusion& exclusion : exclusions_)
       if (exclusion.removed == 0) reject_at(file_, exclusion.rule->source(), "exclude", "removes no cell");
     if (cells_.empty())
@@ -123,8 +125,9 @@ class Expansion {
       });
   }
 
-  void include(const toml::table& rule, const Grid& grid) {
-    Grid own = read_grid(rule, file_, known_);
+  void include(const toml::table& rule, const Grid& grid, const CellLabel& outer) {
+    Grid own = read_grid(rule, file_, known_, {kLabelKey});
+    const CellLabel label(rule, file_, &outer);
     if (own.empty()) reject_at(file_, rule.source(), "include", "has no key");
     const bool takes_lists = find_dimension(grid, "scene") == nullptr;
     for (const Dimension& dimension : grid)
@@ -134,13 +137,14 @@ class Expansion {
     const std::size_t before = cells_.size();
     std::vector<Options> found = product(own);
     if (takes_lists) exclude(found);
-    for (const Options& options : found) add(options, own, rule);
+    for (const Options& options : found) add(options, own, rule, label);
     if (cells_.size() == before)
       reject_at(file_, rule.source(), "include", "adds no cell that is not there already");
   }
 
   // Series of cells may share some, which run once; but a dimension that makes the same cell twice is none.
-  void add(Options options, const Grid& grid, const toml::table& table) {
+  void add(Options options, const Grid& grid, const toml::table& table, const CellLabel& label) {
+    const std::string text = label.of(options);
     std::erase_if(options,
                   [](const auto& option) { return option.second == "false" && is_flag(option.first); });
     const std::string place = "cell " + std::to_string(cells_.size() + 1);
@@ -155,6 +159,8 @@ class Expansion {
       reject_at(file_, table.source(), place,
                 "is there already: another cell has the same run id " + cell.run_id + " and threads");
     if (!is_new) return;
+    cell.label = text;
+    if (!text.empty() && !labels_.insert(text).second) label.reject("two cells are called '" + text + "'");
     if (cells_.size() == kMostCells)
       reject_at(file_, table.source(), place,
                 "is one more than the " + std::to_string(kMostCells) + " that are allowed");
@@ -195,6 +201,7 @@ class Expansion {
   std::vector<Exclusion> exclusions_;
   std::vector<CampaignCell> cells_;
   std::map<std::string, Maker> makers_;  // by the name of the cell, who made it
+  std::set<std::string> labels_;
 };
 
 }  // namespace

@@ -6,12 +6,14 @@
 //     partitioner = "mindp,mix"                       a text with commas is one value: these run in lockstep
 //     record-motion = true                            a flag is given or not
 //     rounds = 3                                      all cells, three times over: no option of `run`
+//     label = "rocks_{bodies}/cfm_{cfm}"              what a cell is called, with its values: no option of `run`
 //     [[exclude]]                                     removes cells that have, of every key here, one of its values
 //     bodies = 200
 //     [[include]]                                     adds the cells of a grid of its own, after every exclusion; keys
 //     bodies = 400                                    of the file with one value hold here too, unless given anew
 //
-// A cell that an [[include]] makes and that is there already is the same cell.
+// A cell that an [[include]] makes and that is there already is the same cell, with the label that it has. The label of the file holds in
+// every [[include]] without one; no two cells may have the same.
 //
 // Without `scene` the keys of the file make no cells by themselves and hold in every [[include]], lists too, and so do its exclusions.
 // Cells stand in the order of the product, the key written last varying fastest, then those of every [[include]]; a round is all
@@ -31,6 +33,7 @@ struct CampaignCell {
       beside_run_id;  // threads and others that change no row, as a manifest has them
   std::string run_id;
   int round = 1;
+  std::string label;  // empty without one
 
   // Of the cell's output directory: "0123456789abcdef_t1_r1", run id, threads and round.
   std::string name() const;

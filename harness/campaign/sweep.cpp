@@ -253,7 +253,7 @@ class Sweep {
     if (const auto left_s = campaign_.seconds_left(times_, options_.jobs))
       text += ", about " + seconds_text(*left_s) + " to go";
     for (const RunningCell& cell : running_)
-      text += "; " + campaign_.rows()[cell.place].cell + " for " + seconds_text(cell.process.seconds());
+      text += "; " + campaign_.rows()[cell.place].title() + " for " + seconds_text(cell.process.seconds());
     progress_.show(text);
   }
 

@@ -101,13 +101,14 @@ int pending_of(const Campaign& campaign) {
 // On stdout a row a cell, in a merge a row a cell that is not ok.
 void print_rows(const SweepOptions& options, const Campaign& campaign) {
   const CellTimes times = campaign.times();
-  std::printf("number,cell,status,about_s,arguments\n");
+  std::printf("number,cell,status,about_s,arguments,label\n");
   for (std::size_t k = 0; k < campaign.cells().size(); ++k) {
     const IndexRow& row = campaign.rows()[k];
     if (options.merge && row.status == to_string(SolveStatus::ok)) continue;
     const std::optional<double> seconds = row.is_pending() ? times.of(campaign.cells()[k]) : 0;
-    std::printf("%d,%s,%s,%s,%s\n", row.number, row.cell.c_str(), row.status.c_str(),
-                seconds ? number_text(*seconds).c_str() : "nan", csv_cell(row.arguments).c_str());
+    std::printf("%d,%s,%s,%s,%s,%s\n", row.number, row.cell.c_str(), row.status.c_str(),
+                seconds ? number_text(*seconds).c_str() : "nan", csv_cell(row.arguments).c_str(),
+                csv_cell(row.label).c_str());
   }
 }
 
@@ -130,6 +131,11 @@ void say_what_is_kept(const Campaign& campaign) {
         " cells of an earlier spec are not in this one; they stay");
 }
 
+// With the name of its log, which a label does not say.
+std::string named(const IndexRow& row) {
+  return row.label == "-" ? row.cell : row.label + " (" + row.cell + ")";
+}
+
 // The last lines and the exit code.
 int conclude(const SweepOptions& options, const Campaign& campaign, const SweepSummary& summary) {
   std::map<std::string, int> counts;
@@ -137,7 +143,7 @@ int conclude(const SweepOptions& options, const Campaign& campaign, const SweepS
   for (const IndexRow& row : campaign.rows()) {
     ++counts[row.status];
     if (row.is_pending() || row.status == to_string(SolveStatus::ok)) continue;
-    if (++not_ok <= kListedFailures) say(row.cell + ": " + row.status + ", " + row.reason);
+    if (++not_ok <= kListedFailures) say(named(row) + ": " + row.status + ", " + row.reason);
   }
   if (not_ok > kListedFailures)
     say("... and " + std::to_string(not_ok - kListedFailures) + " more cells that are not ok");

@@ -46,7 +46,7 @@ void check_spec(const fs::path& out, const fs::path& share, const std::vector<In
     for (std::size_t k = 0; k < expected.size() && wrong.empty(); ++k)
       if (rows[k].cell != expected[k].cell || rows[k].number != expected[k].number ||
           rows[k].run_id != expected[k].run_id || rows[k].round != expected[k].round ||
-          rows[k].arguments != expected[k].arguments)
+          rows[k].arguments != expected[k].arguments || rows[k].label != expected[k].label)
         wrong = "; line " + std::to_string(k + 2) + " is not cell " + std::to_string(expected[k].number) +
                 " of it";
   } catch (const std::invalid_argument& error) {

@@ -46,6 +46,42 @@ TEST(CampaignSpec, ATextWithCommasIsOneValue) {
   EXPECT_EQ(column(cells, "refiner"), Words({"none,fm", "none,fm"}));
 }
 
+Words labels(const std::vector<CampaignCell>& cells) {
+  Words found;
+  for (const CampaignCell& cell : cells) found.push_back(cell.label);
+  return found;
+}
+
+TEST(CampaignSpec, ALabelHoldsTheValuesOfItsCell) {
+  EXPECT_EQ(labels(cells_of(kRocks + "bodies = [5, 6]\nrounds = 2\nlabel = 'rocks_{bodies}/{scene}!'\n")),
+            Words({"rocks_5/rock_pile!", "rocks_6/rock_pile!", "rocks_5/rock_pile!", "rocks_6/rock_pile!"}));
+  EXPECT_EQ(labels(cells_of(kRocks)), Words({""}));
+}
+
+TEST(CampaignSpec, AnIncludeHasALabelOfItsOwnOrThatOfTheFile) {
+  const std::string text = kRocks + "label = 'rocks_{bodies}'\nbodies = 5\n[[include]]\nbodies = 6\n";
+  EXPECT_EQ(labels(cells_of(text)), Words({"rocks_5", "rocks_6"}));
+  EXPECT_EQ(labels(cells_of(text + "label = 'many'\n")), Words({"rocks_5", "many"}));
+}
+
+TEST(CampaignSpec, ACellThatIsThereAlreadyKeepsItsLabel) {
+  EXPECT_EQ(
+      labels(cells_of(
+          kRocks + "label = 'first'\nbodies = 5\n[[include]]\nlabel = 'again_{bodies}'\nbodies = [5, 6]\n")),
+      Words({"first", "again_6"}));
+}
+
+TEST(CampaignSpec, ABadLabelIsNamedWithItsLine) {
+  EXPECT_EQ(error_of(kRocks + "bodies = [5, 6]\nlabel = 'rocks'\n"),
+            "c.toml:3: label: two cells are called 'rocks'");
+  EXPECT_EQ(error_of(kRocks + "bodies = 5\nlabel = 'rocks_{bodys}'\n"),
+            "c.toml:3: label: 'bodys' is no key of the cell (did you mean 'bodies'?)");
+  EXPECT_EQ(error_of(kRocks + "label = 'rocks_{scene'\n"), "c.toml:2: label: has a { without }");
+  EXPECT_EQ(error_of(kRocks + "label = ''\n"),
+            "c.toml:2: label: is empty, or has characters that cannot be printed");
+  EXPECT_EQ(error_of(kRocks + "label = ['a']\n"), "c.toml:2: label: a list is not a text");
+}
+
 TEST(CampaignSpec, RangesHaveBothEndsAndNoRoundingErrors) {
   EXPECT_EQ(column(cells_of(kRocks + "mu = { from = 0, to = 0.5, step = 0.1 }\n"), "mu"),
             Words({"0", "0.1", "0.2", "0.3", "0.4", "0.5"}));

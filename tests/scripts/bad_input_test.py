@@ -11,11 +11,14 @@ import tempfile
 import unittest
 
 from command_table import BAD, COMMANDS, NEAR
+from stand_in_sweep import write_index
 from synthetic import SCRIPTS, command_files, write_matrix, write_steps
 
 # Answers what it would be known by, refuses what is called nope, and leaves a file where it is run.
 PROGRAM = """#!/bin/sh
 case "$*" in
+  sweep*) { grep -q '^partitioner.*nope' "$2" && echo "cleave sweep: x.toml:1: partitioner: 'nope' is unknown" >&2; } ||
+          { grep -q '^solver.*nope' "$2" && echo "cleave sweep: x.toml:1: solver: 'nope' is unknown" >&2; } || touch ran; exit 1 ;;
   *"--solver nope"*) echo "cleave run: --solver: 'nope' is unknown" >&2; exit 1 ;;
   *nope*) echo "cleave run: --partitioner: 'nope' is unknown" >&2; exit 1 ;;
   *--print-key*) echo '{"run_id": "1", "threads": 1, "git_hash": "f", "git_dirty": "false", "flags": "-march=x86-64-v3",
@@ -40,7 +43,8 @@ class Scratch:
         self.root = pathlib.Path(directory)
         self.names = {name: self.root / name for name in ("tree", "extremes", "empty", "file", "out")}
         write_matrix(self.names["tree"])
-        write_steps(self.names["extremes"] / "ratio_1_x_cfm_0_seed_1", [{"status": "ok", "factorizations": 5}])
+        write_steps(self.names["extremes"] / "cells" / "a", [{"status": "ok", "factorizations": 5}])
+        write_index(self.names["extremes"], [{"cell": "a", "label": "ratio_1_x_cfm_0_seed_1"}])
         self.names["empty"].mkdir()
         self.names["file"].write_text("no directory")
         self.program = self.root / "cleave"

@@ -1,21 +1,18 @@
 """What the campaigns under scripts/data/campaigns expand to, held against what scripts run and what the paper says."""
 import csv
 import io
-import os
 import pathlib
 import subprocess
 import tempfile
 import unittest
 
-from synthetic import ROOT, SCRIPTS
+from synthetic import PROGRAM, SCRIPTS
 
 from cleave_scripts.ladder.climbers import CLIMBERS
 from cleave_scripts.ladder.rungs import RUNGS
-from cleave_scripts.measurements.rock_piles import PARTITIONERS, SIZES
 from cleave_scripts.results.paper import PARTITIONERS as PAPERS_PARTITIONERS
 from cleave_scripts.results.paper import REFINERS, SCENES
 
-PROGRAM = os.environ.get("CLEAVE_PROGRAM", ROOT / "build" / "release" / "cleave")
 FOLDER = SCRIPTS / "data" / "campaigns"
 DEFAULTS = {"friction": "box", "dt": 1 / 60, "cfm": 1e-5, "erp": 0.2, "mu": 0.5, "copies": 1, "contact-cap": 8}
 
@@ -47,18 +44,10 @@ def key(options):
     return frozenset((name, value) for name, value in values.items() if DEFAULTS.get(name) != value)
 
 
-def climber_options(climber):
-    """Its solver as one name, pgs@sweeps=20, and the friction model."""
-    words = iter(climber.get("options", ()))
-    given = {name.removeprefix("--"): value for name, value in zip(words, words)}
-    friction = given.pop("friction", "box")
-    return {"solver": climber["solver"] + "".join(f"@{name}={value}" for name, value in given.items()), "friction": friction}
-
-
 class CampaignsTest(unittest.TestCase):
 
     def test_every_campaign_is_tested_here(self):
-        self.assertEqual({path.stem for path in FOLDER.iterdir()}, {"hidden-choices", "ladder", "paper", "scaling", "smoke"})
+        self.assertEqual({path.stem for path in FOLDER.iterdir()}, {"extremes", "hidden-choices", "ladder", "paper", "report", "scaling", "smoke"})
 
     def test_paper_is_its_table_1(self):
         found = cells("paper")
@@ -69,20 +58,35 @@ class CampaignsTest(unittest.TestCase):
 
     def test_scaling_has_the_sizes_of_the_script_in_rounds(self):
         found = cells("scaling")
-        self.assertEqual([int(cell["bodies"]) for cell in found], 3 * list(SIZES))
+        self.assertEqual([int(cell["bodies"]) for cell in found], 3 * [50, 100, 200, 400, 600, 800])
         for cell in found:
-            self.assertEqual((cell["partitioner"], cell["refiner"], cell["scene"]), (PARTITIONERS, ",".join(REFINERS), "rock_pile"))
+            self.assertEqual((cell["partitioner"], cell["refiner"], cell["scene"]), ("mindp,mix", ",".join(REFINERS), "rock_pile"))
 
     def test_ladder_has_every_value_of_every_rung_and_every_climber(self):
         same = {"mode": "separate", "partitioner": "mindp", "refiner": "none", "steps": "600", "repeats": "1"}
         wanted = {
-            key({**same, "scene": rung.scene, **climber_options(climber), **rung.settings(value)})
+            key({**same, "solver": climber.solver, "friction": climber.friction, **rung.settings(value)})
             for rung in RUNGS for value in rung.values for climber in CLIMBERS.values()
         }
         found = [key(cell) for cell in cells("ladder")]
         self.assertEqual(set(found), wanted)
         self.assertEqual(len(found), len(wanted))
         self.assertGreater(len(wanted), 1000)
+
+    def test_report_has_every_solver_on_the_same_rocks_and_motion_of_three_scenes(self):
+        found = cells("report")
+        rocks = [cell for cell in found if cell.get("bodies") == "200"]
+        self.assertEqual(sorted((cell["solver"], cell.get("sweeps", cell.get("quickstep-iterations", "-"))) for cell in rocks),
+                         sorted([("exact,monolithic,schur", "-"), ("schur", "-"), *(("pgs", str(n)) for n in (10, 30, 100, 300, 1000, 3000)),
+                                 *(("ode-quickstep", str(n)) for n in (20, 200, 2000))]))
+        self.assertEqual([cell["scene"] for cell in found if "record-motion" in cell], ["chain_drop", "log_tower", "rock_pile"])
+        self.assertEqual({cell["threads"] for cell in found if "bodies" in cell}, {"1"})
+
+    def test_extremes_meets_every_mass_ratio_with_every_compliance(self):
+        found = cells("extremes")
+        self.assertEqual(len(found), 10 * 7 * 3)
+        self.assertEqual({cell["solver"] for cell in found}, {"interior-point:monolithic"})
+        self.assertEqual({cell["cfm"] for cell in found}, {"1e-4", "1e-6", "1e-8", "1e-10", "1e-12", "1e-14", "0"})
 
     def test_hidden_choices_has_every_choice_that_the_paper_leaves_open(self):
         found = cells("hidden-choices")

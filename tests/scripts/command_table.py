@@ -73,7 +73,7 @@ COMMANDS = {
     "idle_cost": Command({"--rounds": "count", **MEASURED}, runs=True),
     "karger": Command(MEASURED, runs=True),
     "ladder": Command({"--full": "", "--rung": "rungs", "--solver": "climbers", "--steps": "count", "--timeout": "seconds",
-                       "--jobs": "count", **MEASURED}, runs=True),
+                       "--jobs": "count", "--force": "", **MEASURED}, runs=True),
     "model_savings": Command({"--steps": "count", "--rounds": "count", **MEASURED}, runs=True),
     "modelled_workers": Command({"--rounds": "count", **MEASURED}, runs=True),
     "partition_over_time": Command({"--steps": "count", **MEASURED}, runs=True),

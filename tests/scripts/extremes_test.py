@@ -1,4 +1,5 @@
 """scripts/extremes with a stand-in for the program, and the table of what it leaves."""
+import pathlib
 import unittest
 
 from stand_in import StandInCase
@@ -9,7 +10,8 @@ STAND_IN = f"""#!/usr/bin/python3
 import json, os, pathlib, sys
 sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
 import stand_in_key
-stand_in_key.answer()
+import stand_in_sweep
+stand_in_sweep.answer()
 given = dict(zip(sys.argv[2::2], sys.argv[3::2]))
 with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write(" ".join(sys.argv[1:]) + "\\n")
@@ -35,10 +37,11 @@ class ExtremesTest(StandInCase):
         result = self.run_it(*self.QUICK)
         calls = self.calls()
         self.assertEqual(len(calls), 2 * 10)
-        self.assertIn(
-            "run --scene rock_pile --mass 1,1000000 --cfm 0 --solver interior-point:monolithic --steps 20 "
-            "--measure-every 1 --repeats 1 --threads 1 --seed 7 "
-            f"--out {self.directory}/out/ratio_1e6_rock_pile_cfm_0_seed_7 --force", calls)
+        found = [dict(zip(call.split()[1::2], call.split()[2::2])) for call in calls]
+        place = [cell.pop("--out") for cell in found][0]
+        self.assertEqual(pathlib.Path(place).parent, self.directory / "out" / "campaign" / "cells")
+        self.assertIn({"--scene": "rock_pile", "--mass": "1,1000000", "--cfm": "0", "--solver": "interior-point:monolithic", "--steps": "20",
+                       "--measure-every": "1", "--repeats": "1", "--threads": "1", "--seed": "7"}, found)
         self.assertIn("| 1e6 | mixed_pile | ", result.stdout)
         self.assertEqual(result.stdout.count("20 / 20"), 2 * 10)
         self.assertEqual(self.run_it(*self.QUICK).stdout, result.stdout)
@@ -55,7 +58,7 @@ class ExtremesTest(StandInCase):
 
     def test_what_the_program_ends_with_is_passed_on(self):
         self.assertIn("interrupted", self.run_it(*self.QUICK, code=130, stand_in_code=130).stderr)
-        self.assertIn("exit code 1 on ratio_1_chain_drop", self.run_it(*self.QUICK, code=1, stand_in_code=1).stderr)
+        self.assertIn("ratio_1_chain_drop_cfm_1e-4_seed_7: crashed", self.run_it(*self.QUICK, code=1, stand_in_code=1).stderr)
 
     def test_bad_options_are_one_line_before_anything_runs(self):
         self.check_refused((["--cfm", "1e-4,soft"], "--cfm has 'soft'"), (["--seeds", "1,x"], "--seeds has 'x'"),

@@ -125,13 +125,13 @@ hidden_choices_test.write_campaign(pathlib.Path(given["--out"]))
 
 def write_campaign(directory):
     """As `cleave sweep` leaves it, with a cell of an earlier spec that would double a scene's rows."""
-    index = ["cell,number"]
+    index = ["cell,number,round,status,reason,log,arguments,label"]
     cells = campaign((25,), ("scene",))
     for number, rows in enumerate([*cells, [dict(row, interface_rows=10**6) for row in cells[0]]], 1):
         cell = pathlib.Path(directory) / "cells" / f"cell{number}"
         write_steps(cell, rows)
         write_manifest(cell, options={})
-        index.append(f"cell{number},{number if number <= len(cells) else 0}")
+        index.append(f"cell{number},{number if number <= len(cells) else 0},1,ok,-,-,--scene=x,-")
     (pathlib.Path(directory) / "index.csv").write_text("\n".join(index) + "\n")
 
 

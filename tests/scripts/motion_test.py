@@ -80,7 +80,7 @@ class ReadTest(unittest.TestCase):
     def test_recordings_are_found_at_any_depth(self):
         for name in ("b", "a/deep"):
             motion_data.write_motion(self.directory / name)
-        self.assertEqual([str(path.relative_to(self.directory)) for path in find_recordings(self.directory)],
+        self.assertEqual([str(path.relative_to(self.directory)) for path in find_recordings(self.directory).values()],
                          ["a/deep/motion.h5", "b/motion.h5"])
 
     def test_a_killed_run_is_read_as_far_as_its_steps_are_complete(self):

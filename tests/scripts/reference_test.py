@@ -17,17 +17,17 @@ import stand_in_key
 stand_in_key.answer()
 """
 # Every script of a stage: notes its call, writes what the stage is to leave, ends as STAND_IN says of it.
-SCRIPT = """#!/usr/bin/python3
+SCRIPT = f"""#!/usr/bin/python3
 import json, os, pathlib, sys
+sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+from stand_in_sweep import write_index
+""" + """
 name, arguments = os.path.basename(sys.argv[0]), sys.argv[1:]
 with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write(" ".join([name, *arguments]) + "\\n")
 code = json.loads(os.environ.get("STAND_IN", "{}")).get(name, 0)
 out = pathlib.Path(arguments[arguments.index("--out") + 1] if "--out" in arguments else arguments[0] if arguments else ".")
 LEFT = {
-    "reproduce": [f"{scene}/{file}" for scene in ("chain_drop", "log_tower", "rock_pile", "large_rock_pile")
-                  for file in ("manifest.json", "steps.csv")],
-    "report_runs": [f"scaling/bodies_50/{file}" for file in ("manifest.json", "steps.csv")] + ["motion/x/motion.h5"],
     "ladder": ["ladder.csv"], "extremes": ["extremes.csv"], "benchmark_solvers": ["solver_benchmark.json"],
     "benchmark_dense": ["dense_benchmark.json"], "busy_machine": ["busy_machine.csv"],
     "benchmark_partitioners": ["partition_benchmark.json"], "two_threads": ["two_threads.csv"],
@@ -41,7 +41,19 @@ LEFT = {
     "cold_starts": ["cold_starts.csv"], "ablation": ["ablation.csv"], "report": ["figures/verdicts.csv"],
     "readme_figures": ["figure2.png"],
 }
+# Campaigns and the labels of their cells.
+CAMPAIGNS = {
+    "reproduce": {"paper": ["chain_drop", "log_tower", "rock_pile", "large_rock_pile"]},
+    "report_runs": {"scaling": ["bodies_50"], "report": ["one_thread/rock_pile", "motion/rock_pile"]},
+}
 if code in (0, 2, 3):
+    for campaign, labels in CAMPAIGNS.get(name, {}).items():
+        for label in labels:
+            for file in ("manifest.json", "steps.csv"):
+                path = out / campaign / "cells" / label.replace("/", "-") / file
+                path.parent.mkdir(parents=True, exist_ok=True)
+                path.write_text(json.dumps({"argv": [str(path.resolve())]}) if path.suffix == ".json" else name)
+        write_index(out / campaign, [{"cell": label.replace("/", "-"), "label": label} for label in labels])
     for file in LEFT.get(name, []):
         path = out / file
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -108,8 +120,8 @@ class ReferenceTest(unittest.TestCase):
             "two_threads.csv", "karger.csv", "partition_over_time.csv", "partition_worth.csv", "partition_worth.png", "partition_regret.csv", "tradeoff.csv", "tradeoff_partitions.csv",
             "tradeoff_motion.csv", "time_to_accuracy.png", "accuracy_profile.png", "model_savings.csv", "friction_motion.csv", "friction_velocities.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
             "verdict_map.png", "modelled_workers.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
-            "report/verdicts.csv", *(f"report/scaling/bodies_50/{file}" for file in
-                                     ("manifest.json", "steps.csv", "checksums")),
+            "report/verdicts.csv", *(f"report/{run}/{file}" for run in ("scaling/bodies_50", "one_thread/rock_pile")
+                                     for file in ("manifest.json", "steps.csv", "checksums")),
             "figures/figure2.png", *(f"full/{scene}/{file}" for scene in
                                      ("chain_drop", "log_tower", "rock_pile", "large_rock_pile")
                                      for file in ("manifest.json", "steps.csv", "checksums"))})
@@ -117,7 +129,7 @@ class ReferenceTest(unittest.TestCase):
     def test_paths_in_manifests_are_relative_and_files_without_one_have_provenance(self):
         self.run_it()
         manifest = json.loads((self.root / "results/full/rock_pile/manifest.json").read_text())
-        self.assertEqual(manifest["argv"], ["out/reference/report/rock_pile/manifest.json"])
+        self.assertEqual(manifest["argv"], ["out/reference/report/paper/cells/rock_pile/manifest.json"])
         notes = json.loads((self.root / "results/provenance.json").read_text())["files"]
         self.assertEqual(set(notes) - {"figures"}, {name for name in self.results() if not name.endswith(
             ("README.md", "torture.json", "manifest.json", "steps.csv", "checksums", "provenance.json"))})

@@ -1,17 +1,18 @@
 """scripts/reproduce with a stand-in for the program that writes made-up results."""
-import json
+import pathlib
 import unittest
 
 from stand_in import StandInCase
 from synthetic import ROOT
 
-from cleave_scripts.results.paper import ASKED_PARTITIONERS, ASKED_REFINERS
+from cleave_scripts.results.paper import PARTITIONERS, REFINERS
 
 STAND_IN = f"""#!/usr/bin/python3
 import os, pathlib, sys
 sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
 import stand_in_key
-stand_in_key.answer()
+import stand_in_sweep
+stand_in_sweep.answer()
 from synthetic import matrix, write_manifest, write_steps
 given = dict(zip(sys.argv[2::2], sys.argv[3::2]))
 with open(os.environ["STAND_IN_LOG"], "a") as log:
@@ -33,78 +34,67 @@ sys.exit(code)
 class ReproduceTest(StandInCase):
     script, stand_in = "reproduce", STAND_IN
 
+    def cells(self):
+        """Options of the runs, in order."""
+        words = [call.split() for call in self.calls()]
+        return [dict(zip(call[1::2], call[2::2])) for call in words]
+
     def test_quick_matrix_runs_every_scene_and_prints_the_table_and_the_check(self):
         result = self.run_it()
-        calls = self.calls()
-        self.assertEqual(
-            calls[1], f"run --scene log_tower --partitioner {ASKED_PARTITIONERS} --refiner {ASKED_REFINERS} "
-            "--solver schur --steps 500 "
-            f"--measure-every 50 --repeats 3 --threads 2 --seed 1 --out {self.directory}/out/log_tower "
-            "--force")
-        self.assertEqual([call.split()[2] for call in calls],
-                         ["chain_drop", "log_tower", "rock_pile", "large_rock_pile"])
+        cells = self.cells()
+        out = cells[1].pop("--out")
+        self.assertEqual(cells[1], {
+            "--scene": "log_tower", "--partitioner": ",".join(PARTITIONERS), "--refiner": ",".join(REFINERS), "--solver": "schur",
+            "--steps": "500", "--measure-every": "50", "--repeats": "3", "--threads": "2", "--seed": "1"})
+        self.assertEqual(pathlib.Path(out).parent, self.directory / "out" / "paper" / "cells")
+        self.assertEqual([cell["--scene"] for cell in cells], ["chain_drop", "log_tower", "rock_pile", "large_rock_pile"])
         self.assertIn("Large Rock Pile: 10 measured steps", result.stdout)
         self.assertIn("600 rows checked", result.stdout)
         self.assertNotIn("FAIL", result.stdout)
 
     def test_options_are_passed_on(self):
         self.run_it("--scene", "log_tower,chain_drop", "--steps", 25, "--repeats", 1, "--threads", 4,
-                       "--seed", 0)
-        calls = self.calls()
-        self.assertEqual([call.split()[2] for call in calls], ["log_tower", "chain_drop"])
-        self.assertIn("--steps 25 --measure-every 2 --repeats 1 --threads 4 --seed 0", calls[0])
+                       "--seed", 2**64 - 1)
+        first, second = self.cells()
+        self.assertEqual((first["--scene"], second["--scene"]), ("log_tower", "chain_drop"))
+        for name, value in (("steps", 25), ("measure-every", 2), ("repeats", 1), ("threads", 4), ("seed", 2**64 - 1)):
+            self.assertEqual(first[f"--{name}"], str(value))
         self.run_it("--scene", "rock_pile", "--full", "--steps", 20)
-        self.assertIn("--steps 20 --measure-every 1 ", self.calls()[0])
+        cell, = self.cells()
+        self.assertEqual((cell["--steps"], cell["--measure-every"]), ("20", "1"))
 
     def test_fewer_steps_than_ten_are_checked_as_such(self):
         self.assertIn("enough measured steps", self.run_it("--scene", "rock_pile", "--steps", 4).stdout)
         self.run_it("--scene", "log_tower", "--steps", 4, "--measure-every", 5, code=1)
 
-    def test_a_complete_scene_is_kept_until_forced(self):
-        arguments = ("--scene", "rock_pile")
-        self.run_it(*arguments)
+    def test_what_is_done_is_kept_until_forced(self):
+        self.run_it("--scene", "rock_pile")
         self.calls()
-        result = self.run_it(*arguments)
+        self.assertIn("Rock Pile: 10 measured steps", self.run_it("--scene", "rock_pile").stdout)
         self.assertEqual(self.calls(), [])
-        self.assertIn("rock_pile is kept: 150 of 150 rows ok", result.stderr)
+        self.run_it("--scene", "rock_pile", "--force")
+        self.assertEqual(len(self.calls()), 1)
+
+    def test_the_table_is_of_what_was_asked_last(self):
+        self.run_it("--scene", "rock_pile")
+        result = self.run_it("--scene", "rock_pile", "--steps", 20)
         self.assertIn("Rock Pile: 10 measured steps", result.stdout)
-        self.run_it(*arguments, "--force")
-        self.assertEqual(len(self.calls()), 1)
+        self.assertIn("150 rows checked", result.stdout)
+        self.assertEqual(len(self.calls()), 2)
 
-    def test_an_incomplete_scene_is_run_again(self):
-        self.run_it("--scene", "rock_pile")
-        path = self.directory / "out" / "rock_pile" / "manifest.json"
-        complete = path.read_text()
-        for damage in (lambda: path.write_text(json.dumps(dict(json.loads(complete), state="running"))),
-                       lambda: path.write_text(complete[:20]), path.unlink,
-                       (path.parent / "steps.csv").unlink):
-            self.calls()
-            damage()
-            self.run_it("--scene", "rock_pile")
-            self.assertEqual(len(self.calls()), 1)
+    def test_failed_cells_end_with_two_and_are_counted(self):
+        result = self.run_it("--scene", "rock_pile", code=2, stand_in_code=2)
+        self.assertIn("1 failed row (status not ok)", result.stdout)
+        self.assertIn("FAIL  every row has status ok", result.stdout)
 
-    def test_complete_results_of_other_options_are_not_overwritten(self):
-        self.run_it("--scene", "rock_pile")
-        self.calls()
-        result = self.run_it("--scene", "rock_pile", "--steps", 20, code=1)
-        self.assertEqual(self.calls(), [])
-        self.assertIn("--steps 500", result.stderr)
-        self.assertIn("--force", result.stderr)
-        self.run_it("--scene", "rock_pile", "--steps", 20, "--force")
+    def test_an_interruption_says_how_to_go_on(self):
+        result = self.run_it(code=130, stand_in_code=130)
+        self.assertIn("interrupted; the same command goes on", result.stderr)
+        self.assertEqual((len(self.calls()), result.stdout), (1, ""))
 
-    def test_failed_cells_end_with_two_and_are_counted_also_when_kept(self):
-        for _ in range(2):
-            result = self.run_it("--scene", "rock_pile", code=2, stand_in_code=2)
-            self.assertIn("1 failed row (status not ok)", result.stdout)
-            self.assertIn("FAIL  every row has status ok", result.stdout)
-        self.assertEqual(len(self.calls()), 1)
-
-    def test_other_failures_stop_at_once(self):
-        for stand_in_code, code, words in ((1, 1, "exit code 1 on chain_drop"), (130, 130, "interrupted"),
-                                           (139, 1, "exit code 139 on chain_drop")):
-            result = self.run_it(code=code, stand_in_code=stand_in_code)
-            self.assertIn(words, result.stderr)
-            self.assertEqual((len(self.calls()), result.stdout), (1, ""))
+    def test_a_scene_whose_process_fails_does_not_stop_the_others(self):
+        self.run_it(code=1, stand_in_code=139)
+        self.assertEqual(len(self.calls()), 4)
 
     def test_bad_options_are_one_line_before_anything_runs(self):
         self.check_refused((["--steps", "0"], "--steps is '0'"), (["--steps", "ten"], "whole number"),

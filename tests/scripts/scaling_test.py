@@ -5,13 +5,14 @@ from stand_in import StandInCase
 from synthetic import ROOT
 
 from cleave_scripts.figures import data, times_by_size
-from cleave_scripts.results.paper import ASKED_REFINERS
+from cleave_scripts.results.paper import REFINERS
 
 STAND_IN = f"""#!/usr/bin/python3
 import os, sys
 sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
 import stand_in_key
-stand_in_key.answer()
+import stand_in_sweep
+stand_in_sweep.answer()
 from report_data import manifest, rows_of
 from synthetic import write_manifest, write_steps
 given = dict(zip(sys.argv[2::2], sys.argv[3::2]))
@@ -36,35 +37,39 @@ sys.exit(code)
 class ScalingTest(StandInCase):
     script, stand_in = "scaling", STAND_IN
 
-    def test_every_size_is_run_once_and_figure_4_finds_the_exponent(self):
-        self.run_it("--sizes", "50,100,400", "--steps", 20)
-        calls = self.calls()
-        self.assertEqual(
-            calls[1],
-            f"run --scene rock_pile --bodies 100 --partitioner mindp,mix --refiner {ASKED_REFINERS} --solver schur "
-            "--steps 20 --measure-every 2 --repeats 3 --threads 2 --seed 1 "
-            f"--out {self.directory}/out/scaling/bodies_100 --force")
-        self.assertEqual(len(calls), 3)
-        groups = times_by_size.sizes(data.load(self.directory / "out", "schur").blocks, "schur")
-        self.assertEqual(list(groups), [50, 100, 400])
-        means = [part.rows["t_s_ms"].mean() for (part,) in groups.values()]
-        self.assertAlmostEqual(times_by_size.fit_power(list(groups), means).exponent, 1.5, 9)
-        result = self.run_it("--sizes", "50,100,400", "--steps", 20)
-        self.assertEqual(self.calls(), [])
-        self.assertEqual(result.stderr.count("is kept: "), 3)
-        self.run_it("--sizes", "50", "--steps", 20, "--force")
-        self.assertEqual(len(self.calls()), 1)
+    def cells(self):
+        words = [call.split() for call in self.calls()]
+        return [dict(zip(call[1::2], call[2::2])) for call in words]
 
-    def test_results_of_other_options_are_not_overwritten(self):
-        self.run_it("--sizes", "50", "--steps", 20)
-        self.assertIn("--force", self.run_it("--sizes", "50", "--steps", 40, code=1).stderr)
+    def test_every_size_is_run_in_rounds_and_figure_4_finds_the_exponent(self):
+        self.run_it("--sizes", "50,100,400", "--steps", 20, "--repeats", 2)
+        cells = self.cells()
+        self.assertEqual([int(cell["--bodies"]) for cell in cells], 2 * [50, 100, 400])
+        cells[1].pop("--out")
+        self.assertEqual(cells[1], {
+            "--scene": "rock_pile", "--bodies": "100", "--partitioner": "mindp,mix", "--refiner": ",".join(REFINERS), "--solver": "schur",
+            "--steps": "20", "--measure-every": "2", "--repeats": "1", "--threads": "2", "--seed": "1"})
+        groups = times_by_size.sizes(data.load(self.directory / "out", "schur").blocks, "schur")
+        self.assertEqual({size: len(rounds) for size, rounds in groups.items()}, {50: 2, 100: 2, 400: 2})
+        means = [parts[0].rows["t_s_ms"].mean() for parts in groups.values()]
+        self.assertAlmostEqual(times_by_size.fit_power(list(groups), means).exponent, 1.5, 9)
+        self.run_it("--sizes", "50,100,400", "--steps", 20, "--repeats", 2)
+        self.assertEqual(self.calls(), [])
+        self.run_it("--sizes", "50", "--steps", 20, "--repeats", 2, "--force")
+        self.assertEqual(len(self.calls()), 2)
 
     def test_what_the_program_ends_with_is_passed_on(self):
-        for stand_in_code, code, words, calls in ((2, 2, "", 2), (130, 130, "interrupted", 1),
-                                                  (1, 1, "exit code 1 on 50 rocks", 1)):
-            result = self.run_it("--sizes", "50,100", "--force", code=code, stand_in_code=stand_in_code)
+        for stand_in_code, code, words, calls in ((2, 2, "", 2), (130, 130, "interrupted", 1), (1, 2, "", 2)):
+            result = self.run_it("--sizes", "50,100", "--repeats", 1, "--force", code=code, stand_in_code=stand_in_code)
             self.assertIn(words, result.stderr)
             self.assertEqual(len(self.calls()), calls)
+
+    def test_what_the_program_refuses_is_told_in_its_words(self):
+        result = self.run_it("--sizes", "50", "--partitioner", "mindq", code=1)
+        self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
+        self.assertIn("--partitioner: 'mindq' is unknown (did you mean 'mindp'?)", result.stderr)
+        self.assertEqual(self.calls(), [])
+        self.assertFalse((self.directory / "out" / "scaling").exists())
 
     def test_bad_options_are_one_line_before_anything_runs(self):
         self.check_refused((["--sizes", "50,many"], "--sizes has 'many'"),

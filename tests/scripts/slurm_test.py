@@ -9,9 +9,8 @@ import tempfile
 import unittest
 
 from slurm_cluster import NODES, Cluster, until
-from synthetic import ROOT, SCRIPTS
+from synthetic import PROGRAM, ROOT, SCRIPTS
 
-PROGRAM = os.environ.get("CLEAVE_PROGRAM", str(ROOT / "build" / "release" / "cleave"))
 TASKS = 4
 # Two cells a task, each some seconds on an idle core.
 SPEC = """

@@ -4,7 +4,7 @@ import pathlib
 import tempfile
 import unittest
 
-from synthetic import run_script
+from synthetic import PROGRAM, run_script
 
 
 class StandInCase(unittest.TestCase):
@@ -24,6 +24,7 @@ class StandInCase(unittest.TestCase):
     def run_it(self, *arguments, code=0, stand_in_code=0):
         environment = dict(os.environ,
                            CLEAVE_PROGRAM=str(self.program),
+                           STAND_IN_REAL=PROGRAM,
                            STAND_IN_LOG=str(self.log),
                            STAND_IN_CODE=str(stand_in_code))
         result = run_script(self.script, "--out", self.directory / "out", *arguments, env=environment)

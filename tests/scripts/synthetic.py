@@ -1,12 +1,14 @@
 """Small made-up results, written as `cleave run` writes them, and a way to run the scripts."""
 import csv
 import json
+import os
 import pathlib
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "scripts"
+PROGRAM = os.environ.get("CLEAVE_PROGRAM", str(ROOT / "build" / "release" / "cleave"))
 sys.path.insert(0, str(SCRIPTS))
 
 from cleave_scripts.results.paper import (ASKED_PARTITIONERS, ASKED_REFINERS, COMBINATIONS,  # noqa: E402

@@ -92,12 +92,17 @@ def same_setup_with(blocks, scene, solver, partitioners):
     return of_first_setup(sorted(parts, key=preference))
 
 
-def first_runs(group):
-    """All rows of a group, each step of a seed once: where a run was repeated, its first."""
+def merged_runs(group):
+    """All rows of a group, each step of a seed once: where a run was repeated, with the medians of its times."""
     rows = pandas.concat([part.rows for part in group], ignore_index=True)
     keys = [
         column for column in ("seed", "step", "partitioner", "refiner", "label") if column in rows.columns
     ]
+    repeated = rows.groupby(keys, dropna=False)
+    for column in rows.columns[rows.columns.str.endswith("_ms")]:
+        rows[column] = repeated[column].transform("median")
+    if "repeat_count" in rows:
+        rows["repeat_count"] = repeated["repeat_count"].transform("sum", min_count=1)
     return rows.drop_duplicates(keys)
 
 
@@ -108,7 +113,7 @@ def scenes_with(main, *columns):
     """
     rows, gaps = {}, []
     for scene, group in main.items():
-        frame = first_runs(group)
+        frame = merged_runs(group)
         try:
             rows[scene] = need(frame[frame["status"] == "ok"], *columns)
         except NoData as gap:
@@ -124,17 +129,17 @@ def step_count(rows):
 
 def provenance(groups):
     """One sentence of a caption for {name: blocks}: measured steps, repeats and machines."""
-    steps = ", ".join(f"{name} {step_count(first_runs(group))}" for name, group in groups.items())
+    merged = {name: merged_runs(group) for name, group in groups.items()}
+    steps = ", ".join(f"{name} {step_count(rows)}" for name, rows in merged.items())
     parts = [part for group in groups.values() for part in group]
     repeats = sorted({
-        int(value) for part in parts if "repeat_count" in part.rows
-        for value in part.rows["repeat_count"].dropna().unique()
+        int(value) for rows in merged.values() if "repeat_count" in rows for value in rows["repeat_count"].dropna().unique()
     })
     text = f"Measured steps: {steps}."
     if repeats:
         often = "once" if repeats == [1] else f"{' or '.join(map(str, repeats))} times, the median counts"
         text += f" Each cell solved {often}."
-    failed = sum((first_runs(group)["status"] != "ok").sum() for group in groups.values())
+    failed = sum((rows["status"] != "ok").sum() for rows in merged.values())
     if failed:
         text += f" {counted(failed, 'row')} with another status than ok."
     return text + " " + machines(parts)

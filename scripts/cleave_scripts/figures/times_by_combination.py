@@ -5,7 +5,7 @@ import statistics
 import matplotlib.lines
 
 from cleave_scripts.figures import looks, style
-from cleave_scripts.figures.choose import first_runs, provenance, scenes_with, title
+from cleave_scripts.figures.choose import merged_runs, provenance, scenes_with, title
 
 BAR_WIDTH = 0.8
 MOST_LETTERS = 40  # of names side by side below a panel; more stand aslant
@@ -29,7 +29,7 @@ def draw(data):
     figure, axes = style.panels(len(scenes), 2, 2.35)
     for ax, (scene, rows) in zip(axes, scenes.items()):
         ax.set_title(title(scene))
-        _panel(ax, rows, first_runs(data.main[scene]))
+        _panel(ax, rows, merged_runs(data.main[scene]))
     refiners = looks.refiners_in(name for rows in scenes.values() for name in rows["refiner"])
     median = matplotlib.lines.Line2D([], [], **MEDIAN, linestyle="none", label="median, quartiles")
     style.legend_above(figure, [*style.refiner_patches(refiners), median], columns=5)

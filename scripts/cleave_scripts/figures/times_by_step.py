@@ -1,6 +1,6 @@
 """Figure 5 of the paper: t_s of every measured step on Log Tower, one partitioner with each refiner, peaks marked."""
 from cleave_scripts.figures import looks, style
-from cleave_scripts.figures.choose import first_runs, most_steps, provenance, title
+from cleave_scripts.figures.choose import merged_runs, most_steps, provenance, title
 from cleave_scripts.figures.tree import need
 from cleave_scripts.results.paper import PAPER
 
@@ -22,7 +22,7 @@ def _partitioner(data):
 
 def draw(data):
     blocks, partitioner = longest_runs(data), _partitioner(data)
-    measured = first_runs(blocks)
+    measured = merged_runs(blocks)
     measured = measured[measured["partitioner"] == partitioner]
     rows = need(measured[measured["status"] == "ok"], "step", "t_s_ms")
     refiners = looks.refiners_in(rows["refiner"])

@@ -5,7 +5,9 @@ import pathlib
 
 import pandas
 
+from cleave_scripts.ladder.cells import CAMPAIGN as LADDER_CAMPAIGN
 from cleave_scripts.results.about import setup_columns
+from cleave_scripts.results.campaign import run_files_below
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.manifest import load_manifest
 from cleave_scripts.results.steps import Row, load_steps
@@ -33,7 +35,7 @@ class NoData(Exception):
 class Experiment:
     """One output directory."""
 
-    name: str  # its path below the tree
+    name: str  # its path below the tree; of a cell of a campaign, that of the campaign and its label
     rows: pandas.DataFrame  # numbers are floats, nan where not measured
     table_rows: list  # the same rows as Table 1 wants them
     manifest: dict  # empty where there is none
@@ -54,11 +56,13 @@ def read_tree(directory):
     if not directory.is_dir():
         raise ResultError(f"{directory}: no such directory")
     tree = Tree(directory, [], None, None, [])
-    steps, ladders = sorted(directory.rglob("steps.csv")), sorted(directory.rglob("ladder.csv"))
+    found = run_files_below(directory, "steps.csv", lambda error: tree.messages.append(f"{error}; its cells are left out"))
+    steps = [(name, path) for name, path in found if LADDER_CAMPAIGN not in path.parts]  # whose runs ladder.csv judges
+    ladders = sorted(directory.rglob("ladder.csv"))
     if not steps and not ladders:
         raise ResultError(f"{directory}: neither steps.csv nor ladder.csv in it or below")
-    for path in steps:
-        experiment = _attempt(tree, _read_experiment, path)
+    for name, path in steps:
+        experiment = _attempt(tree, lambda path, tree: _read_experiment(path, tree, name), path)
         if experiment is not None:
             tree.experiments.append(experiment)
     if ladders:
@@ -78,7 +82,7 @@ def _attempt(tree, read, path):
         return None
 
 
-def _read_experiment(path, tree):
+def _read_experiment(path, tree, name):
     rows, notes = load_steps(path, REQUIRED)
     tree.messages += notes
     manifest = _manifest(path, tree)
@@ -86,7 +90,6 @@ def _read_experiment(path, tree):
         return None
     frame = to_frame(rows, path, tree.messages)
     kept = _after_skip(frame, manifest)
-    name = str(path.parent.relative_to(tree.directory))
     if len(kept) < len(frame):
         tree.messages.append(f"{path}: {len(frame) - len(kept)} rows before --skip are left out")
     columns = (*TABLE_COLUMNS, *setup_columns(manifest))

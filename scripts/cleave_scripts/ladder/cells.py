@@ -1,105 +1,83 @@
-"""One cell of the ladder: a rung's value and a solver, run in a process of its own and judged."""
+"""One cell of the ladder: a rung's value and who climbs it, what the campaign is asked for, and how its run is judged."""
 import dataclasses
-import hashlib
 import math
-import pathlib
 import statistics
-import subprocess
-import tempfile
-import threading
 
-from cleave_scripts.ladder import rungs
-from cleave_scripts.ladder.climbers import solver_options
 from cleave_scripts.ladder.rungs import ENERGY_LIMIT, HEIGHT_LIMIT_M, NAN, OVERSHOOT, PENETRATION_LIMIT_M
-from cleave_scripts.results.errors import Interrupted, ResultError
-from cleave_scripts.results.kept import Journal
 from cleave_scripts.results.manifest import load_manifest
-from cleave_scripts.results.paper import PLAIN
-from cleave_scripts.results.run_key import build_key
 from cleave_scripts.results.steps import load_steps
 
-TIMED_OUT = "timed out"
+CAMPAIGN = "ladder_cells"  # beside ladder.csv
 # A cell has the status of its worst step; rows after a world has stopped say nothing new.
 WORST_FIRST = ("crashed", "timeout", "out_of_memory", "diverged", "refused", "not_converged", "skipped", "ok")
 MEASURED = ("residual_m_per_s", "iterations", "joint_drift_m", "max_penetration_m", "energy_excess_j",
             "height_error_m", "t_s_ms", "sag_m", "drift_error_m", "rows", "ode_messages")
 COLUMNS = ("rung", "setup", "parameter", "value", "solver", "status", *MEASURED[:7], "first_failing", *MEASURED[7:],
            "physics", "first_failing_physics", "steps", "status_reason")
+DEFAULTS = {"contact-cap": 8, "copies": 1}  # of the program: rungs that give them share cells with rungs that do not
 
 
 @dataclasses.dataclass(frozen=True)
 class Cell:
     rung: object
     value: str
-    solver: str
+    climber: object
     steps: int
 
     @property
-    def label(self):
-        return f"{self.rung.name} {self.value} {self.solver}"
+    def settings(self):
+        return self.rung.settings(self.value)
 
     @property
-    def arguments(self):
-        """What cleave is given, less where it writes. Every solver advances a world of its own."""
-        options = [
-            text for name, value in self.rung.settings(self.value).items() for text in (f"--{name}", value)
-        ]
-        return ("run", "--scene", self.rung.scene, *options, "--steps", str(self.steps), "--repeats", "1",
-                "--partitioner", PLAIN[0], "--refiner", PLAIN[1], *solver_options(self.solver))
+    def identity(self):
+        """Equal for cells of the same run."""
+        return identity({**self.settings, "solver": self.climber.solver, "friction": self.climber.friction})
 
 
-_running = set()
-_stopped = threading.Event()
+def identity(options):
+    """Of options of cleave, those that tell one cell of the ladder from another, numbers as such."""
+    numbers = {name: _number(value) for name, value in options.items()}
+    return frozenset((name, value) for name, value in numbers.items() if name not in SAME and DEFAULTS.get(name) != value)
 
 
-def stop_running():
-    """Ends the programs that still run; their cells are Interrupted, and so are those that have not begun."""
-    _stopped.set()
-    for process in list(_running):
-        process.terminate()
+SAME = ("mode", "partitioner", "refiner", "steps", "repeats")  # for all of them
 
 
-def run_cell(program, cell, timeout_s):
-    """The columns of a cell that depend on its own run alone."""
-    with tempfile.TemporaryDirectory(prefix="cleave_ladder_") as scratch:
-        out = pathlib.Path(scratch) / "out"
-        code, last_words = _run_program([program, *cell.arguments, "--out", str(out)], timeout_s)
-        if code == TIMED_OUT:
-            return failed("timeout", f"stopped after {timeout_s:g} s")
-        return read_cell(cell, out, code, last_words)
-
-
-def _run_program(command, timeout_s):
-    """(exit code, the last line that was said)"""
-    if _stopped.is_set():
-        raise Interrupted
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
-    _running.add(process)
-    if _stopped.is_set():
-        process.terminate()
+def _number(text):
     try:
-        _, said = process.communicate(timeout=timeout_s)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.communicate()
-        return TIMED_OUT, ""
-    finally:
-        _running.discard(process)
-    if process.returncode == 130:
-        _stopped.set()
-    if _stopped.is_set():
-        raise Interrupted
-    return process.returncode, (said.strip().splitlines() or ["nothing"])[-1]
+        return float(text)
+    except ValueError:
+        return text
 
 
-def read_cell(cell, out, code, last_words):
-    if code < 0:
-        return failed("crashed", f"ended by signal {-code}")
-    if code not in (0, 2):
-        if not (out / "manifest.json").exists():
-            raise ResultError(f"cleave {' '.join(cell.arguments)}: {last_words}")
-        return failed("crashed", last_words)
-    return judged(cell, load_steps(out / "steps.csv")[0], load_manifest(out)["result"])
+def ladder_spec(spec, values, climbers, steps):
+    """The campaign with these values by the names of their rungs, and these climbers."""
+    solvers, frictions = ([*dict.fromkeys(getattr(climber, key) for climber in climbers)] for key in ("solver", "friction"))
+    pairs = {(climber.solver, climber.friction) for climber in climbers}
+    others = {friction: [solver for solver in solvers if (solver, friction) not in pairs] for friction in frictions}
+    return spec | {
+        "solver": solvers,
+        "friction": frictions,
+        "steps": steps,
+        "exclude": [{"friction": friction, "solver": unwanted} for friction, unwanted in others.items() if unwanted],
+        "include": [asked for rule in spec["include"] if (asked := _with_values(rule, values))],
+    }
+
+
+def _with_values(rule, values):
+    """The include with the values of its rung that are asked for; None without any."""
+    name, parameter = rule["label"].split("/")[:2]
+    parameter = parameter.strip("{}")
+    own = rule[parameter] if isinstance(rule[parameter], list) else [rule[parameter]]
+    wanted = [value for value in own if value in values.get(name, ())]
+    return rule | {parameter: wanted} if wanted else None
+
+
+def result_of(cell, run):
+    """The columns of a cell that depend on its own run alone. run: of the campaign."""
+    if not run.ran:
+        return failed(run.status, run.reason)
+    return judged(cell, load_steps(run.directory / "steps.csv")[0], load_manifest(run.directory)["result"])
 
 
 def failed(status, reason):
@@ -128,7 +106,7 @@ def largest(rows, column):
 
 
 def expected(cell, rows):
-    return cell.rung.expect(cell.rung.settings(cell.value), rows[-1].integer("step") + 1)
+    return cell.rung.expect(cell.settings, rows[-1].integer("step") + 1)
 
 
 def measured(cell, rows):
@@ -159,20 +137,6 @@ def physics(cell, rows):
         "penetration": values["max_penetration_m"] > OVERSHOOT * aim.depth_m + PENETRATION_LIMIT_M,
         "energy": not gain <= ENERGY_LIMIT,
     }
-    if any(broken.values()) and float(cell.rung.settings(cell.value)["dt"]) > aim.longest_step_s:
+    if any(broken.values()) and float(cell.settings["dt"]) > aim.longest_step_s:
         return "step_too_long"  # no solution of the steps would hold
     return "+".join(name for name, is_broken in broken.items() if is_broken) or "ok"
-
-
-class LadderJournal(Journal):
-    """Finished cells, so that a ladder can be interrupted and given again. Other judges run everything again, and a longer time
-    limit what had no time."""
-
-    def __init__(self, path, program, timeout_s):
-        judges = b"".join(pathlib.Path(file).read_bytes() for file in (__file__, rungs.__file__))
-        self.timeout_s = timeout_s
-        super().__init__(path, build_key(program), {"judges": hashlib.sha256(judges).hexdigest(), "timeout_s": timeout_s})
-
-    def is_valid(self, entry):
-        is_final = entry["result"]["status"] != "timeout" or entry["timeout_s"] >= self.timeout_s
-        return is_final and super().is_valid(entry | {"timeout_s": self.timeout_s})

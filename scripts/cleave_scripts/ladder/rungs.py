@@ -1,4 +1,4 @@
-"""The rungs of the stability ladder, and what rigid bodies on springs must do on them.
+"""The rungs of the stability ladder (campaign `ladder` of cleave sweep), and what rigid bodies on springs must do on them.
 
 A contact or joint row with compliance C = cfm / h gives way under its share of a force F until the push-out
 (erp / h) * depth holds it: with c equal rows, after n steps,
@@ -13,6 +13,8 @@ import dataclasses
 import math
 import typing
 
+from cleave_scripts.campaigns.spec import load_spec
+
 GRAVITY_M_PER_S2 = 9.81
 CONTACTS = 4  # of one shape on another, and on the plane
 LINK_M = 0.3  # of ladder_chain
@@ -24,6 +26,7 @@ MOVING_DRIFT_LIMIT_M = 5e-2  # links that turn and collide open their joints by 
 LEANING_SAG_M = 0.05  # of a stack off its axis: on contacts softer than that it slowly leans over
 OVERSHOOT = 2  # of a spring that is loaded suddenly, in units of its sag
 ENERGY_LIMIT = 1e-9  # times max(1 J, kinetic energy)
+TIME_STEPPING = ("dt", "cfm", "erp", "mu")  # of all rungs that do not say them otherwise
 NAN = math.nan
 
 
@@ -39,7 +42,7 @@ class Expected:
     longest_step_s: float = math.inf  # at which the time stepping is stable, whoever solves the steps
 
 
-Settings = typing.Dict[str, str]  # options of cleave, those of the scene among them
+Settings = typing.Dict[str, str]  # options of cleave, the scene among them
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -48,23 +51,17 @@ class Rung:
 
     name: str
     parameter: str  # option of cleave
-    values: tuple  # as text, in the order they are climbed
-    quick: tuple  # those of the quick ladder
-    scene: str
-    fixed: Settings
+    cells: typing.Dict[str, Settings]  # by value, as text, in the order they are climbed
     expect: typing.Callable[[Settings, int], Expected]
-    setup: str = "-"  # of a stack: on_axis or off_axis
-    derived: typing.Callable[[Settings], Settings] = lambda settings: {}  # options that follow from the value
+    quick: tuple  # values of the quick ladder
+    setup: str  # of a stack: on_axis or off_axis
+
+    @property
+    def values(self):
+        return tuple(self.cells)
 
     def settings(self, value):
-        settings = {
-            "dt": repr(1 / 60),
-            "cfm": "1e-5",
-            "erp": "0.2",
-            "mu": "0.5",
-            **self.fixed, self.parameter: value
-        }
-        return {**settings, **self.derived(settings)}
+        return self.cells[value]
 
 
 def depth_m(force_n, rows, settings, steps):
@@ -131,10 +128,6 @@ def longest_step_s(settings):
     return math.sqrt(LINK_M / (3 * tension_n))
 
 
-def half_the_longest_step(settings):
-    return {"dt": repr(min(float(settings["dt"]), longest_step_s(settings) / 2))}
-
-
 def swinging_chain(settings, _steps):
     return Expected(joint_gap_m=0, drift_limit_m=MOVING_DRIFT_LIMIT_M, longest_step_s=longest_step_s(settings))
 
@@ -151,82 +144,54 @@ def no_closed_form(_settings, _steps):
     return Expected()
 
 
-CFM = ("1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "1e-8", "1e-10", "1e-12", "1e-14", "0")
 QUICK_CFM = ("1e-2", "1e-5", "1e-8", "1e-12", "1e-14", "0")
-RATIO = ("1", "10", "100", "1e3", "1e4", "1e5", "1e6")
 QUICK_RATIO = ("1", "100", "1e4", "1e6")
-STIFF = {"cfm": "1e-10"}
-SWING = {"links": "10", "angle": "30", **STIFF}
 
-# A box that slides at 3 m/s moves by more than the default tolerance in a step. Its contacts would be taken for new
-# ones, and the friction bounds, predicted by a few sweeps from zero, would come out 2 to 5 % too large in every step.
-KEEP_CONTACTS = {"match-tolerance": "0.45"}
-
-# A stack is climbed in two set-ups. On its axis, as the scenes build it by default, all boxes stand straight above
-# each other and overlap by less than the surface layer, so that no contact is pushed out: in a stack at rest all rows
-# between boxes then ask for exactly the velocity they have, and rows of one face carry exactly the same. The answer is
-# none the worse for such ties, but dWorldStep gives up where a pivot meets one (scenarios/README.md). Off the axis
-# there are none: the boxes stand 1 mm beside it, each in another direction, and overlap by more than the layer.
-OFF_AXIS = {"overlap-m": "1e-6", "layer-m": "5e-7", "offset-m": "1e-3"}
-
-STACKS = (
-    Rung("heavy_top", "mass-ratio", RATIO, QUICK_RATIO, "ladder_heavy_top", {
-        "boxes": "5",
-        **STIFF
-    }, heavy_top),
-    Rung("alternating", "mass-ratio", RATIO, QUICK_RATIO, "ladder_alternating", {
-        "boxes": "10",
-        **STIFF
-    }, alternating),
-    Rung("stiffness", "cfm", CFM, QUICK_CFM, "ladder_stack", {"boxes": "10"}, equal_stack),
-    Rung("push_out", "erp", ("0", "0.1", "0.2", "0.4", "0.6", "0.8"), ("0", "0.2", "0.8"), "ladder_stack",
-         {"boxes": "10"}, equal_stack),
-    Rung("time_step", "dt", ("1e-4", "1e-3", "0.005", "0.01", repr(1 / 60), repr(1 / 30)),
-         ("1e-4", "1e-3", repr(1 / 60), repr(1 / 30)), "ladder_stack", {"boxes": "10"}, equal_stack),
-    Rung("contact_cap", "contact-cap", tuple("12345678"), tuple("1248"), "ladder_stack", {"boxes": "5"},
-         equal_stack),
-    Rung("duplicates", "copies", tuple("1234"), tuple("123"), "ladder_stack", {"boxes": "5"}, equal_stack),
-    Rung("stack", "boxes", ("5", "10", "15", "20", "30", "40", "50"), ("5", "10", "20", "50"), "ladder_stack",
-         {}, equal_stack),
-)
+# What must come out, and the values of the quick ladder. A stack is climbed in two set-ups, the second under this name with _off_axis.
+STACKS = {
+    "heavy_top": (heavy_top, QUICK_RATIO),
+    "alternating": (alternating, QUICK_RATIO),
+    "stiffness": (equal_stack, QUICK_CFM),
+    "push_out": (equal_stack, ("0", "0.2", "0.8")),
+    "time_step": (equal_stack, ("1e-4", "1e-3", repr(1 / 60), repr(1 / 30))),
+    "contact_cap": (equal_stack, ("1", "2", "4", "8")),
+    "duplicates": (equal_stack, ("1", "2", "3")),
+    "stack": (equal_stack, ("5", "10", "20", "50")),
+}
+OFF_AXIS = "_off_axis"
+OTHERS = {
+    "chain_bob": (hanging_chain, QUICK_RATIO),
+    "chain_swing": (swinging_chain, QUICK_RATIO),
+    "chain_swing_short_step": (swinging_chain, QUICK_RATIO),
+    "chain_links": (hanging_chain, ("10", "100", "300")),
+    "stiff_pile": (no_closed_form, QUICK_CFM),
+    "friction": (incline, ("0", "0.2", "0.5", "10", "1e6")),
+    "loop": (moving_joints, ("3", "4", "8", "16")),
+    "rigid_loop": (moving_joints, ("3", "4", "8")),
+    "no_contact": (free_fall, ("1", "10")),
+}
 
 
-def both_setups(rung):
-    off_axis = {**rung.fixed, **OFF_AXIS}
-    return (dataclasses.replace(rung, setup="on_axis"),
-            dataclasses.replace(rung, name=f"{rung.name}_off_axis", fixed=off_axis, setup="off_axis"))
+def setup_of(name):
+    if name in OTHERS:
+        return "-"
+    return "off_axis" if name.endswith(OFF_AXIS) else "on_axis"
 
 
-OTHERS = (
-    Rung("chain_bob", "mass-ratio", RATIO, QUICK_RATIO, "ladder_chain", {
-        "links": "10",
-        **STIFF
-    }, hanging_chain),
-    Rung("chain_swing", "mass-ratio", RATIO, QUICK_RATIO, "ladder_chain", SWING, swinging_chain),
-    Rung("chain_swing_short_step",
-         "mass-ratio",
-         RATIO,
-         QUICK_RATIO,
-         "ladder_chain",
-         SWING,
-         swinging_chain,
-         derived=half_the_longest_step),
-    Rung("chain_links", "links", ("10", "30", "100", "300", "1000", "2000"), ("10", "100", "300"),
-         "ladder_chain", {
-             "mass-ratio": "1000",
-             **STIFF
-         }, hanging_chain),
-    Rung("stiff_pile", "cfm", CFM, QUICK_CFM, "rock_pile", {"bodies": "20"}, no_closed_form),
-    Rung("friction", "mu", ("0", "0.1", "0.2", "0.3", "0.5", "1", "10", "1e3", "1e6"),
-         ("0", "0.2", "0.5", "10", "1e6"), "ladder_incline", {
-             "angle": "15",
-             **KEEP_CONTACTS
-         }, incline),
-    Rung("loop", "links", ("3", "4", "6", "8", "16", "32"), ("3", "4", "8", "16"), "ladder_loop",
-         {"cfm": "1e-9"}, moving_joints),
-    Rung("rigid_loop", "links", ("3", "4", "6", "8", "16", "32"), ("3", "4", "8"), "ladder_loop",
-         {"cfm": "0"}, moving_joints),
-    Rung("no_contact", "boxes", ("1", "10"), ("1", "10"), "ladder_free", {}, free_fall),
-)
+def read_rungs(spec):
+    """Those of a campaign, whose includes are labelled RUNG/{PARAMETER}/...; several may be of one rung."""
+    common = {key: value for key, value in spec.items() if isinstance(value, str) and key in TIME_STEPPING}
+    found = {}
+    for rule in spec["include"]:
+        name, parameter = rule["label"].split("/")[:2]
+        parameter = parameter.strip("{}")
+        values = rule[parameter] if isinstance(rule[parameter], list) else [rule[parameter]]
+        options = {key: value for key, value in rule.items() if key != "label"}
+        settings = found.setdefault((name, parameter), {})
+        settings |= {value: {**common, **options, parameter: value} for value in values}
+    return tuple(
+        Rung(name, parameter, settings, *(OTHERS | STACKS)[name.removesuffix(OFF_AXIS)], setup_of(name))
+        for (name, parameter), settings in found.items())
 
-RUNGS = (*(rung for rung_of_stack in STACKS for rung in both_setups(rung_of_stack)), *OTHERS)
+
+RUNGS = read_rungs(load_spec("ladder"))

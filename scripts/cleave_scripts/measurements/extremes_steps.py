@@ -1,8 +1,9 @@
 """What scripts/extremes measured, a row a step, and the table of it."""
 import re
 
+from cleave_scripts.results.campaign import campaign_cells
 from cleave_scripts.results.errors import ResultError
-from cleave_scripts.results.steps import find_steps_files, load_steps
+from cleave_scripts.results.steps import load_steps
 from cleave_scripts.results.whole_file import write_rows
 
 NUMBER = r"[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?"
@@ -14,11 +15,13 @@ WRITTEN = ("mass_ratio", "scene", "cfm", "seed", *COLUMNS)
 def read(paths):
     """One dictionary a step."""
     steps = []
-    for path in find_steps_files(paths):
-        match = NAME.fullmatch(path.parent.name)
+    for cell in (cell for path in paths for cell in campaign_cells(path)):
+        match = NAME.fullmatch(cell.name)
         if match is None:
-            raise ResultError(f"{path}: not a run of scripts/extremes")
-        steps += [match.groupdict() | _measured(row) for row in load_steps(path, COLUMNS)[0]]
+            raise ResultError(f"{cell.directory}: not a run of scripts/extremes")
+        if not cell.ran:
+            raise ResultError(f"{cell.name}: {cell.status}, {cell.reason}")
+        steps += [match.groupdict() | _measured(row) for row in load_steps(cell.directory / "steps.csv", COLUMNS)[0]]
     return steps
 
 

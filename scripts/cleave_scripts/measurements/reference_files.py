@@ -3,17 +3,23 @@ import hashlib
 import json
 
 from cleave_scripts.measurements.reference_stages import RUN_FILES, STAGES
+from cleave_scripts.results.campaign import run_files_below
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.whole_file import write_bytes, write_text
 
 APART = "torture"  # what scripts/torture leaves, which says itself what made it
 
 
+def refuse(error):
+    raise error
+
+
 def _sources(stage, directory):
     """(file, where to below results/)"""
-    for name, target in stage.runs:
-        for path in sorted(path for file in RUN_FILES for path in (directory / name).rglob(file)):
-            yield path, f"{target}/{path.relative_to(directory / name)}"
+    for name, path in (entry for file in RUN_FILES for entry in run_files_below(directory, file, refuse)):
+        for runs, target in stage.runs:
+            if name.startswith(f"{runs}/"):
+                yield path, f"{target}/{name.removeprefix(f'{runs}/')}/{path.name}"
     for pattern, target in stage.files:
         for path in sorted(directory.glob(pattern)):
             yield path, (target + path.name if target.endswith("/") else target)

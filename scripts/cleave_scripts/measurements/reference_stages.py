@@ -1,10 +1,8 @@
 """The stages of scripts/reference: what each runs, how long that takes, and which of its files are kept in results/."""
 import dataclasses
 
-from cleave_scripts.results.paper import SCENES
-
 REPORT = "report"  # one directory for all that scripts/report draws
-REPORT_RUNS = ("scaling", "one_thread", "schur_bodies", "solvers", "every_step", "karger")
+REPORT_RUNS = ("scaling", *(f"report/{name}" for name in ("one_thread", "schur_bodies", "solvers", "every_step", "karger")))
 RUN_FILES = ("manifest.json", "steps.csv")
 
 
@@ -14,7 +12,7 @@ class Stage:
     command: tuple  # a script and its options; {out} is where the stage writes, {report} what the report is drawn from
     minutes: float
     directory: str = ""  # below the reference directory; the name where it is empty
-    runs: tuple = ()  # (directory of runs, where to below results/)
+    runs: tuple = ()  # (campaign, or the first part of its labels too; where to below results/)
     files: tuple = ()  # (file or pattern, where to below results/; a directory ends in /)
 
     @property
@@ -24,9 +22,9 @@ class Stage:
 
 STAGES = (
     Stage("matrix", ("reproduce", "--measure-every", "10", "--out", "{out}"), 20, REPORT,
-          runs=tuple((scene, f"full/{scene}") for scene in SCENES)),
+          runs=(("paper", "full"),)),
     Stage("report_runs", ("report_runs", "--measure-every", "25", "--out", "{out}"), 7, REPORT,
-          runs=tuple((name, f"report/{name}") for name in REPORT_RUNS)),
+          runs=tuple((name, f"report/{name.removeprefix('report/')}") for name in REPORT_RUNS)),
     Stage("ladder", ("ladder", "--out", "{out}"), 4, REPORT, files=(("ladder.csv", "ladder/ladder.csv"),)),
     Stage("ladder_full", ("ladder", "--full", "--solver", "exact", "--out", "{out}"), 2,
           files=(("ladder.csv", "ladder/ladder_full_exact.csv"),)),

@@ -11,6 +11,7 @@ import h5py
 import numpy
 
 from cleave_scripts.motion.shapes import Geom, relative_pose
+from cleave_scripts.results.campaign import run_files_below
 from cleave_scripts.results.errors import ResultError
 
 FILE_NAME = "motion.h5"
@@ -53,6 +54,7 @@ class Motion:
     """One recorded run."""
 
     path: pathlib.Path
+    name: str  # of its run
     attributes: dict
     combinations: list  # (partitioner, refiner, solver)
     mass_kg: numpy.ndarray
@@ -77,8 +79,12 @@ class Motion:
 
 
 def find_recordings(directory):
-    """Every motion.h5 in a directory or below, in order."""
-    return sorted(pathlib.Path(directory).rglob(FILE_NAME))
+    """{name: motion.h5} of every run in a directory or below, in order."""
+
+    def refuse(error):
+        raise error
+
+    return dict(run_files_below(directory, FILE_NAME, refuse))
 
 
 def load_motion(path):
@@ -95,7 +101,9 @@ def load_motion(path):
 
 def load_motions(directory):
     """All recordings in a directory or below."""
-    return [load_motion(path) for path in find_recordings(directory)]
+    found = find_recordings(directory)
+    motions = {name: load_motion(path) for name, path in found.items()}
+    return [dataclasses.replace(motion, name=pathlib.PurePath(name).name or motion.name) for name, motion in motions.items()]
 
 
 def _read(path, file):
@@ -114,7 +122,8 @@ def _read(path, file):
     orientation = _array(path, file, "orientation", len(step), (n, 4))
     measured = _read_measured(path, file, n, len(combinations))
     geoms = _read_geoms(path, file, position[0], orientation[0])
-    return Motion(path, attributes, combinations, mass_kg, step, position, orientation, geoms, measured)
+    name = path.resolve().parent.name
+    return Motion(path, name, attributes, combinations, mass_kg, step, position, orientation, geoms, measured)
 
 
 def _attribute(path, file, name):

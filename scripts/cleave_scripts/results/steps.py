@@ -7,6 +7,7 @@ import dataclasses
 import io
 import pathlib
 
+from cleave_scripts.results.campaign import campaign_cells, is_campaign
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.manifest import load_manifest
 
@@ -51,20 +52,27 @@ class Run:
 
 
 def find_steps_files(paths):
-    """The steps.csv of every path: a file, an output directory, or a directory of output directories."""
+    """The steps.csv of every path: a file, an output directory, a campaign, or a directory of output directories."""
     found = []
     for path in map(pathlib.Path, paths):
         if path.is_file():
             here = [path]
         elif path.is_dir():
-            here = [path / "steps.csv"] if (path /
-                                            "steps.csv").is_file() else sorted(path.glob("*/steps.csv"))
+            here = _steps_files_in(path)
         else:
             raise ResultError(f"{path}: no such file or directory")
         if not here:
-            raise ResultError(f"{path}: neither steps.csv nor */steps.csv in it")
+            raise ResultError(f"{path}: neither steps.csv nor */steps.csv in it, and no campaign with a run that is there")
         found += [file for file in here if file not in found]
     return found
+
+
+def _steps_files_in(directory):
+    if (directory / "steps.csv").is_file():
+        return [directory / "steps.csv"]
+    if not is_campaign(directory):
+        return sorted(directory.glob("*/steps.csv"))
+    return [path for cell in campaign_cells(directory) if (path := cell.directory / "steps.csv").is_file()]
 
 
 def load_steps(path, required=()):

@@ -80,5 +80,4 @@ def _recording_script(motion, most_bytes):
 
 def _recording_name(motion):
     text = f"{motion.scene}, {motion.bodies} bodies, seed {motion.attributes['seed']}"
-    directory = motion.path.resolve().parent.name
-    return text if directory == motion.scene else f"{directory}: {text}"
+    return text if motion.name == motion.scene else f"{motion.name}: {text}"
