@@ -65,6 +65,7 @@ COMMANDS = {
     "benchmark_partitioners": Command({"--repetitions": "count", **MEASURED}, runs=True),
     "benchmark_solvers": Command({"--repetitions": "count", "--print-only": "", **MEASURED}, runs=True),
     "busy_machine": Command({"--rounds": "count", **MEASURED}, runs=True),
+    "campaign_costs": Command({"--cells": "count", "--rounds": "count", "--paper": "input directory", **MEASURED}, runs=True),
     "check_matrix": Command({"--scene": "scenes", "--min-steps": "count"}, ("{tree}",), ("{tree}",), ("{tree}",)),
     "cold_starts": Command({"--seeds": "seeds", **MEASURED}, runs=True),
     "extremes": Command({"--cfm": "compliances", "--seeds": "seeds", **SERIES}, runs=True),

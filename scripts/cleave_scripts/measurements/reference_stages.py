@@ -54,6 +54,8 @@ STAGES = (
     Stage("model_savings", ("model_savings", "--out", "{out}"), 3, files=(("model_savings.csv", "model_savings.csv"),)),
     Stage("friction_models", ("friction_models", "--out", "{out}"), 15,
           files=tuple((file, file) for file in ("friction_motion.csv", "friction_velocities.csv"))),
+    Stage("campaign_costs", ("campaign_costs", "--paper", "{report}/paper", "--out", "{out}"), 12,
+          files=(("campaign_costs.csv", "campaign_costs.csv"),)),
     Stage("hidden_choices", ("hidden_choices", "--out", "{out}", "--report", "{report}"), 50,
           files=tuple((file, file) for file in ("hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv", "verdict_map.png"))),
     Stage("pictures", ("render_figures", "{report}"), 10, REPORT),

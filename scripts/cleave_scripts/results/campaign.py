@@ -27,12 +27,14 @@ def is_campaign(directory):
 
 def campaign_cells(directory):
     """In the order of the spec."""
-    rows = [row for row in _rows(pathlib.Path(directory) / INDEX) if row["number"] != "0"]
+    rows = [row for row in index_rows(directory) if row["number"] != "0"]
     in_rounds = any(row["round"] != "1" for row in rows)
     return [_cell(pathlib.Path(directory), row, in_rounds) for row in rows]
 
 
-def _rows(path):
+def index_rows(directory):
+    """Rows of the index, texts by column, those of earlier specs too (number 0)."""
+    path = pathlib.Path(directory) / INDEX
     try:
         rows = list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8"))))
     except (OSError, ValueError, csv.Error) as error:
