@@ -170,8 +170,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         About::bookkeeping);
   visit("refiner", r.refiner, "who refined the parts", About::bookkeeping);
   visit("solver", r.solver, "name as asked for", About::bookkeeping);
-  visit("strategy", r.strategy, "strategy that ran at the end", About::solver);
-  visit("kernel", r.kernel, "kernel that ran at the end", About::solver);
+  visit("strategy", r.strategy, "strategy that ran at the end");
+  visit("kernel", r.kernel, "kernel that ran at the end");
   visit("friction", r.friction, "friction model", About::problem);
   visit_machine("threads", r.threads, "threads of a solve", About::bookkeeping);
   visit("status", r.status,

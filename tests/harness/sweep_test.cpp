@@ -560,6 +560,23 @@ std::vector<std::string> first_cells(const std::string& head) {
   return cells;
 }
 
+TEST(Sweep, ClocksThatJumpChangeNothing) {
+  const Campaign campaign(std::string(kTiny) + "seed = [1, 2, 3, 4, 5, 6]\n");
+  Words words = campaign.words({});
+  words.insert(words.begin(), {std::string("LD_PRELOAD=") + CLEAVE_JUMPING_CLOCK, CLEAVE_PROGRAM});
+  const auto sweep = [&] { return run_program("/usr/bin/env", words); };
+  EXPECT_EQ(sweep().exit_code, 0);
+  std::set<std::string> days;
+  for (const std::string& moment : campaign.index().column("utc_start")) days.insert(moment.substr(0, 10));
+  EXPECT_GT(days.size(), 1u) << "the clock did not jump";
+  const auto times = campaign.manifest_times();
+  for (const auto& [cell, time] : times)
+    fs::last_write_time(campaign.out() / "cells" / cell / "manifest.json",
+                        time + std::chrono::hours(cell < times.rbegin()->first ? 100000 : -100000));
+  EXPECT_NE(sweep().err.find("6 ok; 6 kept\n"), std::string::npos);
+  EXPECT_EQ(campaign.failures(), "");
+}
+
 TEST(SweepVerify, FindsEveryDamagedByteOfACampaign) {
   const Campaign campaign(std::string(kEndless) + "[[include]]\nsteps = 4\nmeasure-every = 2\n");
   ASSERT_EQ(campaign.sweep({"--cell-seconds", "0.3"}).exit_code, 2);

@@ -8,7 +8,7 @@
 
 #include "harness/peers/dense_problem.h"
 #include "harness/peers/peer_solver.h"
-#include "tests/solver/problem_makers.h"
+#include "tests/peers/coulomb_problems.h"
 #include "tests/solver/solver_checks.h"
 
 namespace cleave {
@@ -19,19 +19,6 @@ const Settings kSettings({{"peer-max-rows", "3000"},
                           {"peer-tolerance", "1e-10"},
                           {"peer-iterations", "100000"}});
 constexpr PeerFunction kBoth[] = {solve_siconos_nsgs, solve_siconos_newton};
-
-// The problem with Coulomb's law for its contacts.
-StepProblem with_coulomb(StepProblem problem) {
-  problem.contact_set.assign(problem.row_count(), ContactSet::box);
-  const double infinity = std::numeric_limits<double>::infinity();
-  for (int r = 0; r < problem.row_count(); ++r) {
-    if (problem.row_kind[r] == RowKind::normal) problem.contact_set[r] = ContactSet::coulomb;
-    if (problem.row_kind[r] != RowKind::friction) continue;
-    problem.lower[r] = -infinity;
-    problem.upper[r] = infinity;
-  }
-  return problem;
-}
 
 // A point of 2 kg that comes down at 1 m/s and moves at `speed` along `angle`.
 StepProblem landing_point(double speed, double angle_rad, double mu) {

@@ -154,6 +154,14 @@ class NewcomersTest(TreeTest):
         self.assertEqual(set(trade_off.points(parts)["label"]),
                          {"ode-quickstep, 200 iterations", "ode-step", "monolithic", "pivot:schur-bodies"})
 
+    def test_a_solver_that_splits_nothing_stands_beside_those_on_parts_and_motion_beside_none(self):
+        for name, rows, parts_of in (("parts", rows_of("rock_pile"), ("25", "bodies")), ("whole", whole_system("pgs"), ("-", "-")),
+                                     ("motion", rows_of("rock_pile"), ("25", "bodies"))):
+            write_run(self.directory / name, [row | dict(zip(("max_bodies", "degree"), parts_of)) for row in rows],
+                      **{"record-motion": name == "motion"})
+        parts, = solver_groups.groups(data.load(self.directory, "schur").blocks).values()
+        self.assertEqual([part.experiment.name for part in parts], ["parts", "whole"])
+
     def test_figures_are_of_the_run_that_was_solved_most_often_and_peaks_of_the_longest(self):
         write_run(self.directory / "motion", rows_of("log_tower", steps=range(90), repeat_count=1))
         write_run(self.directory / "paper", rows_of("log_tower"))

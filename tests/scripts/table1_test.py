@@ -204,6 +204,13 @@ class ComparisonTest(Table1Test):
             write_steps(self.directory, rows)
             self.assertIn(f"mix {column} ", self.table(code=1))
 
+    def test_a_solver_that_hands_over_stays_one_solver(self):
+        write_steps(self.directory, [row | {"strategy": name, "kernel": name} for name, step in (("pivot", 0), ("interior-point", 50))
+                                     for row in matrix("rock_pile", [step])])
+        # As manifests of some builds have it; what ran at the end is measured.
+        write_manifest(self.directory, columns=[{"name": name, "about": "solver"} for name in ("strategy", "kernel")])
+        self.assertIn("Rock Pile: 2 measured steps", self.table())
+
     def test_rows_that_do_not_say_a_parameter_are_not_averaged_with_those_that_do(self):
         write_steps(self.directory / "a", matrix("rock_pile", [0]))
         write_steps(self.directory / "b", [row | {"advance": "exact"} for row in matrix("rock_pile", [50])])

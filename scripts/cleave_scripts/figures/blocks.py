@@ -7,6 +7,7 @@ from cleave_scripts.figures import solver_labels
 from cleave_scripts.results.about import options_about, setup_columns
 from cleave_scripts.results.manifest import processor
 from cleave_scripts.results.names import NO_PARTITIONER, said_parameters
+from cleave_scripts.table.timing_table import NOT_A_PARAMETER
 
 SCALING_FOLDER = "scaling"
 SETUP = ("problem", "partition")  # the solver is in the label
@@ -44,6 +45,11 @@ class Block:
     def is_scaling(self):
         return SCALING_FOLDER in self.experiment.name.split("/")
 
+    @property
+    def is_motion(self):
+        """Run for pictures: its times are of other partitions, once each."""
+        return self.experiment.manifest.get("options", {}).get("record-motion", "False").lower() == "true"
+
     def of_solver(self, solver):
         """The same block with the rows of one solver that works on parts, or None."""
         rows = self.rows[(self.rows["solver"] == solver) & (self.rows["partitioner"] != NO_PARTITIONER)]
@@ -78,7 +84,9 @@ def _without_said(rows, column):
 
 
 def _setup(manifest, keys):
-    """(option or column, value) of all that has to be the same in another block of the same setup, the processor too."""
+    """(option or column, value) of all that has to be the same in another block of the same setup, the processor too. What nothing
+    that ran has, such as parts where nobody splits, is left out."""
     about = options_about(manifest)
     options = {"machine": processor(manifest)} | {name: str(value) for name, value in manifest.get("options", {}).items() if about.get(name) in SETUP}
-    return frozenset((options | {column: str(keys[column].iloc[0]) for column in keys if column != "threads"}).items())
+    columns = {column: str(keys[column].iloc[0]) for column in keys if column != "threads"}
+    return frozenset((options | {column: value for column, value in columns.items() if value != NOT_A_PARAMETER}).items())

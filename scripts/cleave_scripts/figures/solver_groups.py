@@ -9,17 +9,33 @@ MOST_PANELS = 4
 
 def groups(blocks):
     """{name: blocks} of one scene and setup in which several solvers were measured, most solvers first."""
-    found = {}
-    for block in blocks:
-        if not block.is_scaling:
-            found.setdefault((block.scene, block.setup, block.threads), []).append(block)
-    found = [(key, parts) for key, parts in found.items() if len(_labels(parts)) > 1]
+    found = [(key, parts) for key, parts in _alike(blocks) if len(_labels(parts)) > 1]
     for _, parts in found:
         parts.sort(key=lambda part: (-repeats(part), part.experiment.name))
     found.sort(key=lambda item: (-len(_labels(item[1])), item[1][0].experiment.name))
     names = _unlike([_name(key, parts) for key, parts in found], [_threads(key) for key, _ in found])
     names = _unlike(names, [_difference(key, found) for key, _ in found])
     return {name: parts for name, (_, parts) in zip(names, found)}
+
+
+def _alike(blocks):
+    """[((scene, setup, threads), blocks)]: setups in which nothing has two values are one, for a solver that splits nothing says nothing of
+    parts."""
+    found = []
+    for block in blocks:
+        if block.is_scaling or block.is_motion:
+            continue
+        for place, ((scene, setup, threads), parts) in enumerate(found):
+            if (scene, threads) == (block.scene, block.threads) and _agree(setup, block.setup):
+                found[place] = (scene, setup | block.setup, threads), [*parts, block]
+                break
+        else:
+            found.append(((block.scene, block.setup, block.threads), [block]))
+    return found
+
+
+def _agree(setup, other):
+    return len(dict(setup | other)) == len(setup | other)
 
 
 def of_many_solvers(found):
