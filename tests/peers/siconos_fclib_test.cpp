@@ -13,6 +13,7 @@
 #include <memory>
 
 #include "harness/files/fclib_problem.h"
+#include "solver/registry.h"
 #include "tests/harness/run_program.h"
 #include "tests/peers/coulomb_problems.h"
 #include "tests/solver/solver_checks.h"

@@ -8,6 +8,7 @@ from synthetic import ROOT
 from cleave_scripts.measurements import fuzzing
 
 RESULTS = ROOT / "results"
+READ_FROM_RUNS = ("report/verdicts.csv", "figures/figure3.png", "figures/trade_off.png", "campaign_costs.csv")
 
 
 def manifests():
@@ -34,16 +35,21 @@ class ReferenceSetTest(unittest.TestCase):
                                   capture_output=True, text=True, check=False)
             self.assertEqual(done.returncode, 0, f"{commit} is not in the history: {done.stderr}")
 
-    def test_what_scripts_reference_made_is_of_one_commit_and_machine(self):
-        """A measurement that was made anew by its own command since then names its own, and so does its table."""
+    def check_one_commit_and_machine(self, entries):
         commits, machines = {}, set()
-        measured_since = {name for name, entry in provenance().items() if "out/reference/" not in entry["command"]}
-        for name, entry in self.entries():
-            if name not in measured_since:
-                commits.setdefault(entry["build"]["git_hash"], []).append(name)
-                machines.add((entry["machine"]["cpu_model"], entry["machine"]["cores"]))
+        for name, entry in entries:
+            commits.setdefault(entry["build"]["git_hash"], []).append(name)
+            machines.add((entry["machine"]["cpu_model"], entry["machine"]["cores"]))
         self.assertEqual(len(commits), 1, {commit: names[:3] for commit, names in commits.items()})
         self.assertEqual(len(machines), 1, machines)
+
+    def test_all_runs_and_what_is_read_from_them_are_of_one_commit_and_machine(self):
+        read = [(name, provenance()[name]) for name in READ_FROM_RUNS]
+        self.check_one_commit_and_machine([entry for entry in self.entries() if entry[0].endswith("manifest.json")] + read)
+
+    def test_what_else_scripts_reference_made_is_of_one_commit_and_machine(self):
+        """A measurement that was made anew by its own command since then names its own, and so does its table."""
+        self.check_one_commit_and_machine([entry for entry in provenance().items() if "out/reference/" in entry[1]["command"]])
 
     def test_every_file_has_a_manifest_or_stands_in_provenance(self):
         described = set(provenance())
