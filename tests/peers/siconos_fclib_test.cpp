@@ -1,6 +1,5 @@
 // What is exported for FCLIB, read back by the library of FCLIB's own, is a problem of Siconos whose solution is ours. (Debian's
 // Siconos is built without its own reader of these files, which calls the same library.)
-#include <fclib.h>
 #include <gtest/gtest.h>
 #include <numerics/Friction_cst.h>
 #include <numerics/GlobalFrictionContactProblem.h>
@@ -9,8 +8,13 @@
 #include <numerics/NumericsSparseMatrix.h>
 #include <numerics/SolverOptions.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+
+extern "C" {  // the header does not say so itself
+#include <fclib.h>
+}
 
 #include "harness/files/fclib_problem.h"
 #include "solver/registry.h"
