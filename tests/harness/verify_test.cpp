@@ -453,7 +453,7 @@ TEST_F(Verify, ReportsARunThatDidNotEnd) {
 
 // Directories of older programs have no checksums and name no files: that is said, and the rest is checked.
 TEST_F(Verify, SaysWhatCannotBeCheckedOfAnOlderDirectory) {
-  const fs::path stored = fs::path(CLEAVE_SOURCE_DIR) / "results/full/rock_pile";
+  const fs::path stored = fs::path(CLEAVE_SOURCE_DIR) / "tests/harness/golden/older_run";
   const ProgramResult result = run_cleave({"verify", stored});
   EXPECT_EQ(result.exit_code, 0) << result.out;
   EXPECT_NE(result.err.find("of a program without checksums"), std::string::npos) << result.err;
