@@ -46,9 +46,7 @@ void check_known(const std::string& option, const std::string& text, const Given
     const std::string has =
         "; " + algorithm + (names.empty() ? " has no parameters" : " has: " + joined(names));
     if (!owner.empty()) reject(option, "'" + text + "': " + name + " is a parameter of " + owner + has);
-    const std::string nearest = nearest_name(name, names);
-    const std::string question = nearest.empty() ? "" : " (did you mean '" + nearest + "'?)";
-    reject(option, "'" + text + "': '" + name + "' is no parameter" + question + has);
+    reject(option, "'" + text + "': '" + name + "' is no parameter" + nearest_question(name, names) + has);
   }
 }
 

@@ -36,11 +36,14 @@ std::string nearest_name(std::string_view word, std::span<const std::string> cho
   return completed == choices.end() ? "" : *completed;
 }
 
+std::string nearest_question(std::string_view word, std::span<const std::string> choices) {
+  const std::string nearest = nearest_name(word, choices);
+  return nearest.empty() ? "" : " (did you mean '" + nearest + "'?)";
+}
+
 std::string unknown_name_text(std::string_view word, std::span<const std::string> choices) {
   std::string text = "'";
-  text.append(word).append("' is unknown");
-  const std::string nearest = nearest_name(word, choices);
-  if (!nearest.empty()) text.append(" (did you mean '").append(nearest).append("'?)");
+  text.append(word).append("' is unknown").append(nearest_question(word, choices));
   return text.append("; choices: ").append(joined(choices));
 }
 

@@ -17,6 +17,9 @@ int edit_distance(std::string_view a, std::string_view b);
 // more than half of the longer word and does not begin with the word.
 std::string nearest_name(std::string_view word, std::span<const std::string> choices);
 
+// " (did you mean 'mindp'?)", or nothing when nothing is near.
+std::string nearest_question(std::string_view word, std::span<const std::string> choices);
+
 // "'mindq' is unknown (did you mean 'mindp'?); choices: mindp, maxdp, ..."; no question when nothing is near.
 std::string unknown_name_text(std::string_view word, std::span<const std::string> choices);
 

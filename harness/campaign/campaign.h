@@ -56,7 +56,7 @@ class Campaign {
   const std::string& build() const { return build_; }
   int of_other_build() const { return of_other_build_; }  // pending cells that another build has done
   CellTimes times() const;                                // of the cells that have ended
-  // For those that are pending, so many at a time; nothing before the first has ended.
+  // For those that are pending, those that run from their beginning, so many at a time; nothing before the first has ended.
   std::optional<double> seconds_left(const CellTimes& times, int jobs) const;
 
   std::vector<IndexRow> all_rows() const;

@@ -6,16 +6,6 @@
 #include "harness/base/printable_text.h"
 
 namespace cleave {
-namespace {
-
-std::string question(const std::string& key, const std::map<std::string, std::string>& values) {
-  std::vector<std::string> keys;
-  for (const auto& [name, value] : values) keys.push_back(name);
-  const std::string nearest = nearest_name(key, keys);
-  return nearest.empty() ? "" : " (did you mean '" + nearest + "'?)";
-}
-
-}  // namespace
 
 CellLabel::CellLabel(const toml::table& table, const std::string& file, const CellLabel* outer)
     : file_(file) {
@@ -38,7 +28,11 @@ std::string CellLabel::of(const std::map<std::string, std::string>& values) cons
     if (close == std::string::npos) reject("has a { without }");
     const std::string key = text_.substr(open + 1, close - open - 1);
     const auto value = values.find(key);
-    if (value == values.end()) reject("'" + key + "' is no key of the cell" + question(key, values));
+    if (value == values.end()) {
+      std::vector<std::string> keys;
+      for (const auto& [name, text] : values) keys.push_back(name);
+      reject("'" + key + "' is no key of the cell" + nearest_question(key, keys));
+    }
     filled += text_.substr(from, open - from) + value->second;
     from = close + 1;
   }

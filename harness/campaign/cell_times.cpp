@@ -23,6 +23,11 @@ void CellTimes::add(const CampaignCell& cell, double seconds) {
   }
 }
 
+void CellTimes::add_running(const CampaignCell& cell, double seconds) {
+  const std::optional<double> expected = of(cell);
+  if (expected && *expected < seconds) add(cell, 2 * seconds);
+}
+
 std::optional<double> CellTimes::of(const CampaignCell& cell) const {
   const auto mean = [](const Mean& of) { return of.sum / of.count; };
   if (const auto kind = of_kind_.find(kind_of(cell)); kind != of_kind_.end()) return mean(kind->second);

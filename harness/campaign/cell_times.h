@@ -14,6 +14,8 @@ namespace cleave {
 class CellTimes {
  public:
   void add(const CampaignCell& cell, double seconds);
+  // A cell that runs: where that is longer than was expected of it, it is taken to be half done.
+  void add_running(const CampaignCell& cell, double seconds);
   // Nothing before the first has finished.
   std::optional<double> of(const CampaignCell& cell) const;
 

@@ -96,10 +96,10 @@ Grid read_grid(const toml::table& table, const std::string& file, const std::vec
     if (std::ranges::count(known, key) == 0) {
       std::vector<std::string> allowed = known;
       allowed.insert(allowed.end(), others.begin(), others.end());
-      const std::string nearest = nearest_name(key, allowed);
+      const std::string question = nearest_question(key, allowed);
       reject_at(file, name.source(), key,
                 "is no option of cleave run that a cell may have" +
-                    (nearest.empty() ? "; see cleave run --help" : " (did you mean '" + nearest + "'?)"));
+                    (question.empty() ? "; see cleave run --help" : question));
     }
     grid.push_back({key, reader.values(node, key), name.source()});
   }

@@ -245,13 +245,23 @@ class Sweep {
     saved_at_ = Clock::now();
   }
 
+  std::optional<double> seconds_left() const {
+    CellTimes times = times_;
+    double spent_s = 0;
+    for (const RunningCell& cell : running_) {
+      times.add_running(campaign_.cells()[cell.place], cell.process.seconds());
+      spent_s += cell.process.seconds();
+    }
+    const std::optional<double> all_s = campaign_.seconds_left(times, options_.jobs);
+    return all_s ? std::optional(std::max(0.0, *all_s - spent_s / options_.jobs)) : std::nullopt;
+  }
+
   void show_progress() {
     if (options_.quiet || !progress_.is_due()) return;
     const std::vector<CampaignCell>& cells = campaign_.cells();
     std::string text = std::to_string(done_) + " of " + std::to_string(cells.size()) + " cells, " +
                        std::to_string(failed_) + " failed";
-    if (const auto left_s = campaign_.seconds_left(times_, options_.jobs))
-      text += ", about " + seconds_text(*left_s) + " to go";
+    if (const auto left_s = seconds_left()) text += ", about " + seconds_text(*left_s) + " to go";
     for (const RunningCell& cell : running_)
       text += "; " + campaign_.rows()[cell.place].title() + " for " + seconds_text(cell.process.seconds());
     progress_.show(text);

@@ -36,9 +36,7 @@ std::vector<std::string> scene_parameters(const Given& stored) {
 [[noreturn]] void reject_unknown(const std::string& name, std::vector<std::string> known) {
   for (const OptionSpec& spec : run_option_specs()) known.push_back(spec.name);
   for (const CommonParameter& common : common_parameters()) known.push_back(common.parameter.name);
-  const std::string nearest = nearest_name(name, known);
-  throw std::invalid_argument("option '" + name + "' is unknown" +
-                              (nearest.empty() ? "" : " (did you mean '" + nearest + "'?)"));
+  throw std::invalid_argument("option '" + name + "' is unknown" + nearest_question(name, known));
 }
 
 // Whose row carries a content's hash, as file@0123456789abcdef: what a manifest knows is not where it lay.

@@ -74,17 +74,22 @@ class Campaign:
     def run(self, program, *words, force=False):
         """The exit code of a campaign that ran to its end: 0, or 2 where a cell is not ok."""
         with self.command(program, *words, *["--force"] * force) as (words, options):
-            try:
-                code = run_and_watch(words, **options)
-            except KeyboardInterrupt:
-                code = 130
-        if code == 130:
-            raise Interrupted("the same command goes on, finished cells are kept")
-        if code == 1:
-            raise AlreadyTold
-        if code not in (0, FAILED_CELLS):
-            raise ResultError(f"cleave sweep stopped with exit code {code} on campaign {self.name}")
-        return code
+            return run_sweep(words, self.name, **options)
+
+
+def run_sweep(words, name, **options):
+    """The exit code of `cleave sweep` with these words, where it ran the campaign of this name to its end: 0, or 2 where a cell is not ok."""
+    try:
+        code = run_and_watch(words, **options)
+    except KeyboardInterrupt:
+        code = 130
+    if code == 130:
+        raise Interrupted("the same command goes on, finished cells are kept")
+    if code == 1:
+        raise AlreadyTold
+    if code not in (0, FAILED_CELLS):
+        raise ResultError(f"cleave sweep stopped with exit code {code} on campaign {name}")
+    return code
 
 
 def duration(start_s):

@@ -3,7 +3,7 @@ import dataclasses
 import math
 import statistics
 
-from cleave_scripts.ladder.rungs import ENERGY_LIMIT, HEIGHT_LIMIT_M, NAN, OVERSHOOT, PENETRATION_LIMIT_M
+from cleave_scripts.ladder.rungs import ENERGY_LIMIT, HEIGHT_LIMIT_M, NAN, OVERSHOOT, PENETRATION_LIMIT_M, rung_of
 from cleave_scripts.results.manifest import load_manifest
 from cleave_scripts.results.steps import load_steps
 
@@ -14,6 +14,7 @@ MEASURED = ("residual_m_per_s", "iterations", "joint_drift_m", "max_penetration_
             "height_error_m", "t_s_ms", "sag_m", "drift_error_m", "rows", "ode_messages")
 COLUMNS = ("rung", "setup", "parameter", "value", "solver", "status", *MEASURED[:7], "first_failing", *MEASURED[7:],
            "physics", "first_failing_physics", "steps", "status_reason")
+SAME = ("mode", "partitioner", "refiner", "steps", "repeats")  # for all cells
 DEFAULTS = {"contact-cap": 8, "copies": 1}  # of the program: rungs that give them share cells with rungs that do not
 
 
@@ -40,9 +41,6 @@ def identity(options):
     return frozenset((name, value) for name, value in numbers.items() if name not in SAME and DEFAULTS.get(name) != value)
 
 
-SAME = ("mode", "partitioner", "refiner", "steps", "repeats")  # for all of them
-
-
 def _number(text):
     try:
         return float(text)
@@ -66,9 +64,7 @@ def ladder_spec(spec, values, climbers, steps):
 
 def _with_values(rule, values):
     """The include with the values of its rung that are asked for; None without any."""
-    name, parameter = rule["label"].split("/")[:2]
-    parameter = parameter.strip("{}")
-    own = rule[parameter] if isinstance(rule[parameter], list) else [rule[parameter]]
+    name, parameter, own = rung_of(rule)
     wanted = [value for value in own if value in values.get(name, ())]
     return rule | {parameter: wanted} if wanted else None
 

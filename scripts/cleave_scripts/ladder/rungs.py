@@ -178,14 +178,20 @@ def setup_of(name):
     return "off_axis" if name.endswith(OFF_AXIS) else "on_axis"
 
 
+def rung_of(rule):
+    """(name of its rung, parameter, its values of it) of an include with the label RUNG/{PARAMETER}/..."""
+    name, parameter = rule["label"].split("/")[:2]
+    parameter = parameter.strip("{}")
+    values = rule[parameter]
+    return name, parameter, values if isinstance(values, list) else [values]
+
+
 def read_rungs(spec):
-    """Those of a campaign, whose includes are labelled RUNG/{PARAMETER}/...; several may be of one rung."""
+    """Those of a campaign; several of its includes may be of one rung."""
     common = {key: value for key, value in spec.items() if isinstance(value, str) and key in TIME_STEPPING}
     found = {}
     for rule in spec["include"]:
-        name, parameter = rule["label"].split("/")[:2]
-        parameter = parameter.strip("{}")
-        values = rule[parameter] if isinstance(rule[parameter], list) else [rule[parameter]]
+        name, parameter, values = rung_of(rule)
         options = {key: value for key, value in rule.items() if key != "label"}
         settings = found.setdefault((name, parameter), {})
         settings |= {value: {**common, **options, parameter: value} for value in values}

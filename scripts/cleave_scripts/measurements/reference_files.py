@@ -10,13 +10,9 @@ from cleave_scripts.results.whole_file import write_bytes, write_text
 APART = "torture"  # what scripts/torture leaves, which says itself what made it
 
 
-def refuse(error):
-    raise error
-
-
 def _sources(stage, directory):
     """(file, where to below results/)"""
-    for name, path in (entry for file in RUN_FILES for entry in run_files_below(directory, file, refuse)):
+    for name, path in (entry for file in RUN_FILES for entry in run_files_below(directory, file)):
         for runs, target in stage.runs:
             if name.startswith(f"{runs}/"):
                 yield path, f"{target}/{name.removeprefix(f'{runs}/')}/{path.name}"

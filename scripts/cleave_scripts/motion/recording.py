@@ -80,11 +80,7 @@ class Motion:
 
 def find_recordings(directory):
     """{name: motion.h5} of every run in a directory or below, in order."""
-
-    def refuse(error):
-        raise error
-
-    return dict(run_files_below(directory, FILE_NAME, refuse))
+    return dict(run_files_below(directory, FILE_NAME))
 
 
 def load_motion(path):

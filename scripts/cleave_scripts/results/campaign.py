@@ -55,7 +55,11 @@ def options_of(arguments):
     return {name: value if sign else True for name, sign, value in pairs}
 
 
-def run_files_below(directory, file_name, tell):
+def refuse(error):
+    raise error
+
+
+def run_files_below(directory, file_name, tell=refuse):
     """(name, path) of a file of every output directory, in the order of the names: its path below the directory, or that of its campaign and
     what the campaign calls it. Cells that a campaign has no more are left out. tell(error): of a campaign that cannot be read."""
     directory, found, campaigns = pathlib.Path(directory), [], set()
