@@ -1,14 +1,15 @@
-// auto: the partitioner, size of parts and refiner whose modelled time (cost_model.h) is least.
+// auto: the partitioner, size of parts and refiner whose modelled time (cost_model.h) is least, and with cost-kernel `any`
+// the kernel.
 //
 // Candidates are one part with all bodies, and every partitioner, max-bodies and refiner of the table below whose parts
-// are smaller than the whole; the first of equal ones is taken, so that one subsystem wins where splitting buys nothing.
+// are smaller than the whole, each with every kernel that is asked for; `monolithic` splits nothing and is one of one part. The
+// first of equal ones is taken, so that one subsystem wins where splitting buys nothing.
 // Looking takes longer than many a solve, so a choice serves while the graph is of its size: it is made on the first graph
 // with an edge, and again on one whose edges are a quarter more or a fifth fewer. What was chosen is Partition::choice.
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <memory>
-#include <optional>
 
 #include "partition/calibration.h"
 #include "partition/parameters.h"
@@ -42,10 +43,15 @@ Partition split(const Candidate& candidate, const BodyGraph& graph) {
   return parts;
 }
 
+// Places in candidates_ and costs_.
+struct Choice {
+  std::size_t candidate = 0, cost = 0;
+};
+
 class Auto final : public Partitioner {
  public:
   explicit Auto(const Settings& settings)
-      : cost_(kernel_cost(settings)), kernel_(settings.text(parameters::cost_kernel().name)) {
+      : costs_(kernel_costs(settings)), cost_kernel_(settings.text(parameters::cost_kernel().name)) {
     candidates_.push_back(make_candidate("single", "none"));
     for (const int max_bodies : kMaxBodies)
       for (const char* partitioner : kPartitioners)
@@ -55,20 +61,21 @@ class Auto final : public Partitioner {
   }
 
   void keep_choice(const std::string& choice) override {
-    std::size_t k = 0;
-    while (k < candidates_.size() && named(k) != choice) ++k;
-    if (k == candidates_.size())
-      refuse("choice of auto", choice, "one that it makes with cost-kernel " + kernel_);
-    chosen_ = k;
-    kept_ = true;
+    for (std::size_t k = 0; k < candidates_.size(); ++k)
+      for (std::size_t c = 0; c < costs_.size(); ++c)
+        if (is_choice({k, c}) && named({k, c}) == choice) {
+          chosen_ = {k, c};
+          kept_ = true;
+          return;
+        }
+    refuse("choice of auto", choice, "one that it makes with cost-kernel " + cost_kernel_);
   }
 
  private:
   Partition do_run(const BodyGraph& graph) const override {
     if (!kept_ && graph.edge_count() > 0 && is_of_other_size(graph.edge_count())) choose(graph);
-    const std::size_t chosen = chosen_.value_or(0);
-    Partition parts = split(candidates_[chosen], graph);
-    parts.choice = named(chosen);
+    Partition parts = split(candidates_[chosen_.candidate], graph);
+    parts.choice = named(chosen_);
     return parts;
   }
 
@@ -77,25 +84,37 @@ class Auto final : public Partitioner {
     return edges >= kOtherSize * edges_ || kOtherSize * edges <= edges_;
   }
 
+  // What splits nothing is a choice of one part, the first candidate.
+  bool is_choice(const Choice& choice) const {
+    return choice.candidate == 0 || costs_[choice.cost].kernel != CostKernel::monolithic;
+  }
+
   void choose(const BodyGraph& graph) const {
-    CostCounter counter(graph, cost_.kernel, cost_.active_share);
+    std::vector<CostCounter> counters;
+    for (const KernelCost& cost : costs_) counters.emplace_back(graph, cost.kernel, cost.active_share);
     double least_ms = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
       if (k > 0 && *candidates_[k].partitioner->max_bodies() >= graph.body_count()) continue;
       const Partition parts = split(candidates_[k], graph);
-      const double ms = modelled_ms(counter.count(parts.part_of_body, parts.part_count), cost_);
-      if (ms < least_ms) least_ms = ms, chosen_ = k;
+      for (std::size_t c = 0; c < costs_.size(); ++c) {
+        if (!is_choice({k, c})) continue;
+        const double ms = modelled_ms(counters[c].count(parts.part_of_body, parts.part_count), costs_[c]);
+        if (ms < least_ms) least_ms = ms, chosen_ = {k, c};
+      }
     }
     edges_ = graph.edge_count();
   }
 
-  std::string named(std::size_t k) const { return candidates_[k].text + "/" + kernel_; }
+  std::string named(const Choice& choice) const {
+    const int kernel = static_cast<int>(costs_[choice.cost].kernel);
+    return candidates_[choice.candidate].text + "/" + cost_kernel_names()[kernel];
+  }
 
-  KernelCost cost_;
-  std::string kernel_;
+  std::vector<KernelCost> costs_;  // of the kernels to choose among
+  std::string cost_kernel_;
   std::vector<Candidate> candidates_;
   // The choice that serves, and the edges of the graph that it was made on.
-  mutable std::optional<std::size_t> chosen_;
+  mutable Choice chosen_;
   mutable double edges_ = 0;
   bool kept_ = false;  // one that was made before
 };

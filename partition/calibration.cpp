@@ -13,6 +13,7 @@
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
 #include "partition/parameters.h"
+#include "partition/refuse.h"
 
 namespace cleave {
 
@@ -215,9 +216,21 @@ const Calibration& known_calibration(const std::string& fingerprint) {
   return found->second;
 }
 
+std::vector<KernelCost> kernel_costs(const Settings& settings) {
+  const Calibration& calibration = known_calibration(settings.text("calibration"));
+  const std::string& kernel = settings.text(parameters::cost_kernel().name);
+  std::vector<KernelCost> costs;
+  for (std::size_t k = 0; k < cost_kernel_names().size(); ++k)
+    if (kernel == parameters::kAnyKernel || kernel == cost_kernel_names()[k])
+      costs.push_back(calibration.of(static_cast<CostKernel>(k), settings.integer("cost-threads")));
+  return costs;
+}
+
 KernelCost kernel_cost(const Settings& settings) {
-  return known_calibration(settings.text("calibration"))
-      .of(settings.word<CostKernel>(parameters::cost_kernel()), settings.integer("cost-threads"));
+  const std::string& kernel = settings.text(parameters::cost_kernel().name);
+  if (kernel == parameters::kAnyKernel)
+    refuse("cost-kernel", kernel, "one kernel; only auto chooses among all");
+  return kernel_costs(settings).front();
 }
 
 }  // namespace cleave

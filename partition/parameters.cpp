@@ -162,8 +162,8 @@ const Parameter& cost_kernel() {
   static const Parameter parameter{.name = "cost-kernel",
                                    .kind = Kind::word,
                                    .default_value = "schur-rows",
-                                   .words = {"schur-rows", "schur-bodies"},
-                                   .help = "kernel whose time is modelled",
+                                   .words = {"schur-rows", "schur-bodies", kAnyKernel},
+                                   .help = "kernel whose time is modelled; any: auto chooses among all",
                                    .source = "partition/README.md"};
   return parameter;
 }

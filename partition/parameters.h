@@ -15,6 +15,8 @@ enum class DegreeScope { whole, left };
 
 namespace parameters {
 
+inline constexpr const char* kAnyKernel = "any";  // word of cost-kernel: whichever is cheapest
+
 const Parameter& max_bodies();    // n_max: most bodies of a part while growing
 const Parameter& degree();        // DegreeUnit
 const Parameter& degree_scope();  // DegreeScope
@@ -29,7 +31,7 @@ const Parameter& trials();          // of which the best counts
 const Parameter& ufactor();
 const Parameter& scotch_strategy();
 const Parameter& calibration();   // of the cost model: a fingerprint (calibration.h)
-const Parameter& cost_kernel();   // CostKernel, of those that work on parts
+const Parameter& cost_kernel();   // a CostKernel that works on parts, or kAnyKernel
 const Parameter& cost_threads();  // that the cost model counts on
 
 }  // namespace parameters

@@ -31,6 +31,8 @@ std::vector<int> count_cut_edges(const BodyGraph& graph, std::span<const int> pa
 
 }  // namespace
 
+std::string_view kernel_of_choice(std::string_view choice) { return choice.substr(choice.rfind('/') + 1); }
+
 // uncovered: cut edges of every body that no chosen body covers. Bodies are kept in buckets by that count, each a
 // heap by index; a count only falls, so a stale body is put down where it belongs.
 std::vector<char> cut_cover(const BodyGraph& graph, std::span<const int> part_of_body) {

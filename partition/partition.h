@@ -5,6 +5,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "partition/body_graph.h"
@@ -16,6 +17,9 @@ struct Partition {
   int part_count = 0;
   std::string choice = {};  // of a partitioner that chooses others: what made it, else empty
 };
+
+// The kernel that a choice is for, "schur-rows" of "mix@max-bodies=50+fm/schur-rows"; empty of an empty choice.
+std::string_view kernel_of_choice(std::string_view choice);
 
 // Parts numbered by their lowest body. label_of_body: (n) equal within a part and nowhere else, in [0, n).
 Partition numbered_by_lowest_body(std::span<const int> label_of_body);

@@ -1,6 +1,7 @@
 // Counted work against its slow twin, the model against sums by hand, and calibrations as text.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -150,8 +151,13 @@ TEST(CostModel, deals_the_longest_task_out_first) {
   EXPECT_EQ(longest_first_makespan({}, 2), 0);
 }
 
-// Every candidate of auto, made and modelled by itself.
-std::string least_choice(const BodyGraph& graph, const KernelCost& cost) {
+// The cheapest of the candidates of auto, each made and modelled by itself.
+struct LeastChoice {
+  std::string text;
+  double ms;
+};
+
+LeastChoice least_choice(const BodyGraph& graph, const KernelCost& cost) {
   std::string best;
   double least_ms = 0;
   const auto look = [&](const std::string& partitioner, int max_bodies, const std::string& refiner) {
@@ -165,9 +171,9 @@ std::string least_choice(const BodyGraph& graph, const KernelCost& cost) {
   for (const int max_bodies : {10, 25, 50, 100, 200})
     for (const std::string partitioner : {"mindp", "mix", "multilevel"})
       for (const char* refiner : {"none", "fm"})
-        if (max_bodies < graph.body_count())
+        if (max_bodies < graph.body_count() && cost.kernel != CostKernel::monolithic)
           look(partitioner + "@max-bodies=" + std::to_string(max_bodies), max_bodies, refiner);
-  return best + "/" + cost_kernel_names()[static_cast<int>(cost.kernel)];
+  return {best + "/" + cost_kernel_names()[static_cast<int>(cost.kernel)], least_ms};
 }
 
 TEST(Auto, takes_what_is_cheapest_by_the_model) {
@@ -181,9 +187,53 @@ TEST(Auto, takes_what_is_cheapest_by_the_model) {
                                                  std::string(cost_kernel_names()[static_cast<int>(kernel)]) +
                                                  "@cost-threads=" + std::to_string(threads))
                                     ->run(graph);
-        EXPECT_EQ(parts.choice, least_choice(graph, shipped.of(kernel, threads)));
+        EXPECT_EQ(parts.choice, least_choice(graph, shipped.of(kernel, threads)).text);
       }
     }
+  }
+}
+
+TEST(Auto, takes_the_cheapest_kernel_where_any_may_be) {
+  const Calibration& shipped = known_calibration(read_calibration("calibration", "shipped"));
+  for (const int threads : {1, 2}) {
+    for (const int height : {1, 3, 9}) {
+      Random random(3);
+      const BodyGraph graph = pile(random, 5, 5, height).graph();
+      std::vector<LeastChoice> of_kernels;
+      for (const CostKernel kernel :
+           {CostKernel::schur_rows, CostKernel::schur_bodies, CostKernel::monolithic})
+        of_kernels.push_back(least_choice(graph, shipped.of(kernel, threads)));
+      const auto chosen = make_partitioner("auto@cost-kernel=any@cost-threads=" + std::to_string(threads));
+      EXPECT_EQ(chosen->run(graph).choice, std::ranges::min(of_kernels, {}, &LeastChoice::ms).text);
+    }
+  }
+}
+
+// Costs by which every kernel is cheapest in turn.
+TEST(Auto, chooses_every_kernel_where_it_is_cheapest) {
+  Random random(3);
+  const BodyGraph graph = pile(random, 5, 5, 3).graph();
+  for (std::size_t cheapest = 0; cheapest < cost_kernel_names().size(); ++cheapest) {
+    std::vector<KernelCost> costs;
+    for (std::size_t k = 0; k < cost_kernel_names().size(); ++k) {
+      costs.push_back({static_cast<CostKernel>(k), 1, 1, 1, {}});
+      costs.back().cost[0] = k == cheapest ? 1 : 2;
+    }
+    const std::string path = testing::TempDir() + "any_test.toml";
+    std::ofstream(path, std::ios::binary) << calibration_text({}, costs);
+    const std::string fingerprint = read_calibration("--calibration", path);
+    std::remove(path.c_str());
+    const auto chosen = make_partitioner("auto@cost-kernel=any@calibration=" + fingerprint);
+    EXPECT_EQ(chosen->run(graph).choice, std::string("single+none/") + cost_kernel_names()[cheapest]);
+  }
+}
+
+TEST(Auto, alone_chooses_among_kernels) {
+  try {
+    make_refiner("fm-cost@cost-kernel=any");
+    FAIL() << "was made";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(), "cost-kernel is any, allowed: one kernel; only auto chooses among all");
   }
 }
 
@@ -233,6 +283,14 @@ TEST(Auto, keeps_a_choice_that_was_made_before) {
   fixed->keep_choice(other);
   EXPECT_EQ(fixed->run(graph).choice, other);
   EXPECT_THROW(fixed->keep_choice("mix@max-bodies=99+fm/schur-rows"), std::invalid_argument);
+  EXPECT_THROW(fixed->keep_choice("mix@max-bodies=100+fm/schur-bodies"), std::invalid_argument);
+  const std::unique_ptr<Partitioner> any = make_partitioner("auto@cost-kernel=any");
+  for (const char* choice : {"mix@max-bodies=100+fm/schur-bodies", "single+none/monolithic"}) {
+    any->keep_choice(choice);
+    EXPECT_EQ(any->run(graph).choice, choice);
+  }
+  EXPECT_THROW(any->keep_choice("mix@max-bodies=100+fm/monolithic"), std::invalid_argument);
+  EXPECT_THROW(any->keep_choice("single+none/any"), std::invalid_argument);
   EXPECT_THROW(make_partitioner("mix")->keep_choice(other), std::invalid_argument);
 }
 
