@@ -7,9 +7,9 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "scripts"))
 from cleave_scripts.measurements import regret  # noqa: E402
 
 
-def rows_of(times, scene="pile"):
-    """times: {(partitioner, refiner): [(t_pr, t_s) a round, from round 1]}; one step a round."""
-    return [{"scene": scene, "solver": "schur", "partitioner": partitioner, "refiner": refiner, "round": number,
+def rows_of(times, scene="pile", solver="schur", step=100):
+    """times: {(partitioner, refiner): [(t_pr, t_s) a round, from round 1]}; of one step."""
+    return [{"scene": scene, "solver": solver, "step": step, "partitioner": partitioner, "refiner": refiner, "round": number,
              "t_pr_ms": str(t_pr), "t_s_ms": str(t_s), "auto_choice": "mix+fm/schur-rows" if partitioner == "auto" else "-"}
             for (partitioner, refiner), rounds in times.items() for number, (t_pr, t_s) in enumerate(rounds, 1)]
 
@@ -34,11 +34,28 @@ class RegretTest(unittest.TestCase):
         self.assertFalse(self.one(times={("auto", "none"): [(0, 1), (0, 11.1)]}).holds)
         self.assertFalse(self.one(times={("mindp", "none"): [(0, 12), (0, 10.4)]}).holds)
 
-    def test_steps_of_a_round_are_averaged_and_scenes_stand_apart(self):
-        twice = rows_of(TIMES) + rows_of({cell: [(0, 0)] * 2 for cell in TIMES}) + rows_of(TIMES, "tower")
+    def test_steps_are_averaged_and_scenes_stand_apart(self):
+        twice = rows_of(TIMES) + rows_of({cell: [(0, 0)] * 2 for cell in TIMES}, step=200) + rows_of(TIMES, "tower")
         pile, tower = regret.regrets(twice)
         self.assertEqual((pile.scene, pile.auto_ms), ("pile", 10.5 / 2))
         self.assertEqual((tower.scene, tower.auto_ms), ("tower", 10.5))
+
+    def test_of_a_step_the_median_round_counts(self):
+        rows = rows_of({**TIMES, ("auto", "none"): [(0, 0), (0, 10), (0, 0), (0, 99), (0, 0), (0, 11)]})
+        self.assertEqual(regret.regrets(rows)[0].auto_ms, 11)
+
+    def test_where_the_kernel_is_chosen_all_kernels_are_the_grid(self):
+        others = {("mindp", "none"): [(0, 11), (0, 11)], ("mix", "fm"): [(0, 9), (0, 20)]}
+        rows = (rows_of(TIMES, solver="pivot:a") + rows_of(others, solver="pivot:b") +
+                rows_of({("-", "-"): [(float("nan"), 7), (float("nan"), 9.5)]}, solver="pivot:monolithic") +
+                rows_of({("auto", "none"): [(1, 9), (1, 9.5)]}, solver="pivot:chosen"))
+        alone, chosen = regret.regrets(rows)
+        self.assertEqual((alone.solver, alone.best, alone.best_ms, alone.baseline_ms), ("pivot:a", "mix+fm", 10, 12))
+        self.assertEqual((chosen.solver, chosen.best, chosen.best_ms), ("pivot:chosen", "monolithic", 9.5))
+        self.assertEqual((chosen.baseline_ms, chosen.auto_ms), (11, 10.5))
+        self.assertFalse(chosen.holds)
+        rows[-1]["t_s_ms"] = "9.4"
+        self.assertTrue(regret.regrets(rows)[1].holds)
 
 
 if __name__ == "__main__":

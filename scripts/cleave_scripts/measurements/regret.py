@@ -1,12 +1,15 @@
 """What scripts/partition_regret measured: the partitioner auto against the best cell of a grid.
 
-The time of a cell in a scene and round is the mean of t_pr_ms + t_s_ms over its steps. The best cell is the one of least
-median over the odd rounds; what it is compared by are the even rounds, which it was not chosen by.
+The time of a cell in a scene is the mean over its steps of the medians of t_pr_ms + t_s_ms over rounds. The best cell is the
+one of least time in the odd rounds; what it is compared by are the even rounds, which it was not chosen by. Where auto chooses
+the kernel too, its grid are the cells of all kernels, and the baseline is the best of theirs.
 """
 import dataclasses
+import math
 import statistics
 
 AUTO, BASELINE = "auto+none", "mindp+none"
+ANY_KERNEL = "pivot:chosen"  # the solver of auto where it chooses among all kernels
 MOST_REGRET = 0.1
 COLUMNS = ("scene", "seed", "step", "solver", "partitioner", "refiner", "max_bodies", "calibration", "auto_choice", "threads",
            "round", "status", "t_pr_ms", "t_s_ms")
@@ -35,31 +38,45 @@ def cell_of(row):
     return f"{row['partitioner']}+{row['refiner']}"
 
 
-def _times(rows):
-    """{cell: {round: mean ms}}"""
-    lists = {}
+def _total_ms(row):
+    t_pr_ms = float(row["t_pr_ms"])
+    return float(row["t_s_ms"]) + (0 if math.isnan(t_pr_ms) else t_pr_ms)  # whoever ignores parts has none
+
+
+def _times(rows, name):
+    """{name(row): [ms in the even rounds, in the odd ones]}"""
+    lists = {}  # by cell, by parity, by step
     for row in rows:
-        total = float(row["t_pr_ms"]) + float(row["t_s_ms"])
-        lists.setdefault(cell_of(row), {}).setdefault(int(row["round"]), []).append(total)
-    return {cell: {number: statistics.fmean(times) for number, times in rounds.items()} for cell, rounds in lists.items()}
+        of_cell = lists.setdefault(name(row), ({}, {}))
+        of_cell[int(row["round"]) % 2].setdefault(row["step"], []).append(_total_ms(row))
+    return {cell: [statistics.fmean(map(statistics.median, steps.values())) for steps in of_cell] for cell, of_cell in lists.items()}
 
 
-def _median(rounds, parity):
-    return statistics.median(ms for number, ms in rounds.items() if number % 2 == parity)
+def _cell_and_kernel(row):
+    kernel = row["solver"].partition(":")[2]
+    return kernel if row["partitioner"] == "-" else f"{cell_of(row)}/{kernel}"
+
+
+def _best(times, cells):
+    return min(cells, key=lambda cell: times[cell][1])
 
 
 def _regret(scene, solver, rows):
-    times = _times(rows)
-    grid = [cell for cell in times if not cell.startswith("auto+")]
-    best = min(grid, key=lambda cell: _median(times[cell], 1))
-    best_ms, baseline_ms, auto_ms = (_median(times[cell], 0) for cell in (best, BASELINE, AUTO))
-    choices = dict.fromkeys(row["auto_choice"] for row in rows if cell_of(row) == AUTO)
-    return Regret(scene, solver, best, best_ms, baseline_ms, auto_ms, list(choices))
+    """rows: of the scene."""
+    chooses_kernel = solver == ANY_KERNEL
+    auto = [row for row in rows if row["solver"] == solver and cell_of(row) == AUTO]
+    grid = _times([row for row in rows if row["partitioner"] != "auto" and (chooses_kernel or row["solver"] == solver)],
+                  _cell_and_kernel if chooses_kernel else cell_of)
+    best, baseline = _best(grid, grid), _best(grid, [cell for cell in grid if cell.split("/")[0] == BASELINE])
+    (auto_times,) = _times(auto, cell_of).values()
+    choices = dict.fromkeys(row["auto_choice"] for row in auto)
+    return Regret(scene, solver, best, grid[best][0], grid[baseline][0], auto_times[0], list(choices))
 
 
 def regrets(rows):
-    """[Regret], one a scene and solver. rows: with a round, of two rounds or more, each with AUTO and BASELINE."""
-    groups = {}
+    """[Regret], one a scene and solver with rows of AUTO. rows: with a round, of two rounds or more; BASELINE among them."""
+    scenes = {}
     for row in rows:
-        groups.setdefault((row["scene"], row["solver"]), []).append(row)
-    return [_regret(scene, solver, of_scene) for (scene, solver), of_scene in groups.items()]
+        scenes.setdefault(row["scene"], []).append(row)
+    return [_regret(scene, solver, of_scene) for scene, of_scene in scenes.items()
+            for solver in dict.fromkeys(row["solver"] for row in of_scene if cell_of(row) == AUTO)]
