@@ -21,14 +21,18 @@ extern const char* const kShippedCalibration;  // calibration.toml
 
 namespace {
 
-constexpr const char* kSchema = "cleave-calibration-1";
+constexpr const char* kSchema = "cleave-calibration-2";
 constexpr const char* kThreads = ".threads-";
-constexpr Range kAtLeastZero{0, std::numeric_limits<double>::infinity()};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr Range kAtLeastZero{0, kInfinity}, kAnyNumber{-kInfinity, kInfinity};
 
 // Every number of a section, in the order of the lines.
 template <class Cost, class Visitor>
 void visit_numbers(Cost& cost, Visitor&& visit) {
-  visit("factorizations", cost.factorizations, kAtLeastZero);
+  visit("factorizations_constant", cost.factorizations.constant, kAnyNumber);
+  visit("factorizations_per_log_row", cost.factorizations.per_log_row, kAnyNumber);
+  visit("factorizations_per_degree", cost.factorizations.per_degree, kAnyNumber);
+  visit("factorizations_most", cost.factorizations.most, Range{1, kInfinity});
   visit("active_share", cost.active_share, Range{0, 1});
   for (int t = 0; t < kCostTerms; ++t) visit(cost_terms()[t].name, cost.cost[t], kAtLeastZero);
 }

@@ -1,8 +1,8 @@
 // The coefficients of the cost model (cost_model.h) on one machine, as text that `cleave calibrate` writes:
 //
-//     schema = "cleave-calibration-1"          first lines: name = "text", kept as they are
+//     schema = "cleave-calibration-2"          first lines: name = "text", kept as they are
 //     [schur-rows.threads-1]                   a kernel on so many threads
-//     factorizations = 6                       then a line for each number of KernelCost
+//     factorizations_most = 6                  then a line for each number of KernelCost
 //
 // in the form of TOML. A calibration is known by its fingerprint, FNV-1a-64 over the bytes of the text, so that what was
 // chosen by it depends on nothing that is not on record. The one that is shipped (calibration.toml) is always known to a

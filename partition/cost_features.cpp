@@ -43,6 +43,8 @@ CostCounter::CostCounter(const BodyGraph& graph, CostKernel kernel, double activ
 CostFeatures CostCounter::count(std::span<const int> part_of_body, int part_count) {
   CostFeatures features;
   features.kernel = kernel_;
+  features.bodies = graph_.body_count();
+  features.edges = graph_.edge_count();
   if (kernel_ == CostKernel::schur_rows) {
     count_parts(part_of_body, part_count, features);
   } else if (kernel_ == CostKernel::schur_bodies) {

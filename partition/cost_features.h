@@ -39,6 +39,7 @@ struct PartCost {
 struct CostFeatures {
   CostKernel kernel = CostKernel::schur_rows;
   std::vector<PartCost> parts;    // of monolithic one
+  int bodies = 0, edges = 0;      // of the graph
   int rows = 0;                   // of the step
   int cut_rows = 0;               // 0 for monolithic
   int cover_bodies = 0;           // of the vertex cover that schur-bodies takes; 0 for others

@@ -1,6 +1,7 @@
 #include "partition/cost_model.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
 
@@ -61,8 +62,23 @@ std::array<double, kCostTerms> unit_costs_ms(const CostFeatures& features, int t
   return costs;
 }
 
+std::array<double, 3> ExpectedFactorizations::terms(const CostFeatures& features) {
+  return {1, std::log(std::max(features.rows, 1)),
+          static_cast<double>(features.edges) / std::max(features.bodies, 1)};
+}
+
+double ExpectedFactorizations::of(const CostFeatures& features) const {
+  const auto [one, log_rows, degree] = terms(features);
+  return std::clamp(std::exp(constant * one + per_log_row * log_rows + per_degree * degree), 1.0, most);
+}
+
+ExpectedFactorizations ExpectedFactorizations::always(double factorizations) {
+  return {std::log(factorizations), 0, 0, factorizations};
+}
+
 double modelled_ms(const CostFeatures& features, const KernelCost& cost) {
-  const std::array<double, kCostTerms> units = unit_costs_ms(features, cost.threads, cost.factorizations);
+  const std::array<double, kCostTerms> units =
+      unit_costs_ms(features, cost.threads, cost.factorizations.of(features));
   return std::inner_product(units.begin(), units.end(), cost.cost.begin(), 0.0);
 }
 

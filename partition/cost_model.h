@@ -4,7 +4,7 @@
 //     t_s = terms of the solve + factorizations * terms of a pass
 //
 // A pass is a factorisation with its assembly, substitutions and checks. How often a strategy factors is not a matter of the
-// partition; what a strategy needed in the median stands in the calibration.
+// partition, and not of the graph alone either; what can be expected of the graph is fitted too.
 #pragma once
 
 #include <array>
@@ -30,11 +30,25 @@ struct CostTerm {
 inline constexpr int kCostTerms = 10;
 std::span<const CostTerm, kCostTerms> cost_terms();
 
+// Factorisations of a solve: more where there are more rows to decide on, fewer where a body is held by more others, as in a
+// tower at rest. Within what was fitted,
+//
+//     ln factorizations = constant + per_log_row ln(rows) + per_degree edges / bodies,   in [0, ln(most)]
+struct ExpectedFactorizations {
+  double constant = 0, per_log_row = 0, per_degree = 0;
+  double most = 1;
+
+  // What the three numbers are coefficients of.
+  static std::array<double, 3> terms(const CostFeatures& features);
+  double of(const CostFeatures& features) const;
+  static ExpectedFactorizations always(double factorizations);  // >= 1
+};
+
 // One kernel on so many threads.
 struct KernelCost {
   CostKernel kernel = CostKernel::schur_rows;
   int threads = 1;
-  double factorizations = 1;              // of a solve, expected
+  ExpectedFactorizations factorizations;
   double active_share = 1;                // of the cut rows, expected in the interface of schur-rows
   std::array<double, kCostTerms> cost{};  // >= 0, in the units of the terms
 };

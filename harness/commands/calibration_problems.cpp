@@ -18,22 +18,22 @@ struct Source {
 
 // Every second one is held out, so that sizes and scenes are in both halves.
 constexpr Source kSources[] = {
-    {"rock_pile", "bodies", "50", "80,150"},
-    {"rock_pile", "bodies", "100", "80,150"},
-    {"rock_pile", "bodies", "200", "100,200"},
-    {"rock_pile", "bodies", "300", "100,200"},
-    {"large_rock_pile", "bodies", "200", "100,200"},
-    {"large_rock_pile", "bodies", "400", "100,200"},
-    {"log_tower", "layers", "10", "20,90"},
-    {"log_tower", "layers", "20", "20,90"},
-    {"log_tower", "layers", "30", "20,90"},
-    {"log_tower", "layers", "40", "20,90"},
-    {"chain_drop", "links", "50", "100,250"},
-    {"chain_drop", "links", "100", "100,250"},
-    {"silo", "bodies", "50", "10,20"},
-    {"silo", "bodies", "80", "10,20"},
-    {"silo", "bodies", "150", "10,20"},
-    {"silo", "bodies", "200", "10,20"},
+    {"rock_pile", "bodies", "50", "60,100,150,250"},
+    {"rock_pile", "bodies", "100", "60,100,150,250"},
+    {"rock_pile", "bodies", "200", "70,110,200,280"},
+    {"rock_pile", "bodies", "300", "70,110,200,280"},
+    {"large_rock_pile", "bodies", "200", "70,110,200,280"},
+    {"large_rock_pile", "bodies", "400", "70,110,200,280"},
+    {"log_tower", "layers", "10", "20,50,90,130"},
+    {"log_tower", "layers", "20", "20,50,90,130"},
+    {"log_tower", "layers", "30", "20,50,90,130"},
+    {"log_tower", "layers", "40", "20,50,90,130"},
+    {"chain_drop", "links", "50", "60,100,170,250"},
+    {"chain_drop", "links", "100", "60,100,170,250"},
+    {"silo", "bodies", "50", "10,20,35,50"},
+    {"silo", "bodies", "80", "10,20,35,50"},
+    {"silo", "bodies", "150", "10,20,35,50"},
+    {"silo", "bodies", "200", "10,20,35,50"},
 };
 
 RunOptions options_of(const Source& source, std::uint64_t seed) {

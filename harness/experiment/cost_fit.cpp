@@ -1,5 +1,6 @@
 #include "harness/experiment/cost_fit.h"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,6 +20,20 @@ double median(std::vector<double> values) {
 CostFeatures features_of(const CostSample& sample, double active_share) {
   return CostCounter(sample.graph, sample.kernel, active_share)
       .count(sample.parts.part_of_body, sample.parts.part_count);
+}
+
+// Where samples do not tell the terms apart, the least of all coefficients that fit them.
+ExpectedFactorizations fit_factorizations(std::span<const CostSample> samples,
+                                          std::span<const CostFeatures> features) {
+  Eigen::MatrixXd terms(samples.size(), 3);
+  Eigen::VectorXd logarithm(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const auto of_sample = ExpectedFactorizations::terms(features[k]);
+    terms.row(k) = Eigen::Map<const Eigen::RowVector3d>(of_sample.data());
+    logarithm[k] = std::log(samples[k].factorizations);
+  }
+  const Eigen::Vector3d fitted = terms.completeOrthogonalDecomposition().solve(logarithm);
+  return {fitted[0], fitted[1], fitted[2], std::max(1.0, std::exp((terms * fitted).maxCoeff()))};
 }
 
 void fit_group(std::span<const CostSample> samples, std::span<const std::array<double, kCostTerms>> units,
@@ -49,16 +64,17 @@ double interface_size(double flops) {
 }
 
 KernelCost fit_cost(std::span<const CostSample> samples) {
-  KernelCost cost{samples.front().kernel, samples.front().threads, 1, 1, {}};
-  std::vector<double> factorizations, shares;
+  KernelCost cost{samples.front().kernel, samples.front().threads, {}, 1, {}};
+  std::vector<double> shares;
+  std::vector<CostFeatures> counted;
   std::vector<std::array<double, kCostTerms>> units;
   for (const CostSample& sample : samples) {
     const CostFeatures features = features_of(sample, sample.active_share);
-    factorizations.push_back(sample.factorizations);
     if (features.cut_rows > 0) shares.push_back(sample.active_share);
     units.push_back(unit_costs_ms(features, sample.threads, sample.factorizations));
+    counted.push_back(features);
   }
-  cost.factorizations = median(std::move(factorizations));
+  cost.factorizations = fit_factorizations(samples, counted);
   if (!shares.empty()) cost.active_share = median(std::move(shares));
   for (int group = 0; group < kCostGroups; ++group) fit_group(samples, units, group, cost);
   return cost;
@@ -67,7 +83,7 @@ KernelCost fit_cost(std::span<const CostSample> samples) {
 double modelled_ms(const CostSample& sample, const KernelCost& cost, bool counted) {
   KernelCost own = cost;
   if (counted) {
-    own.factorizations = sample.factorizations;
+    own.factorizations = ExpectedFactorizations::always(sample.factorizations);
     own.active_share = sample.active_share;
   }
   return modelled_ms(features_of(sample, own.active_share), own);

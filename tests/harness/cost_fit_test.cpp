@@ -125,17 +125,52 @@ CostSample sample_with(const KernelCost& truth, std::uint64_t seed) {
 
 TEST(CostFit, FindsTheCostsThatMadeTheTimes) {
   for (const int threads : {1, 2}) {
-    KernelCost truth{CostKernel::schur_rows, threads, 1, 1, {20, 900, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
+    KernelCost truth{
+        CostKernel::schur_rows, threads, {}, 1, {20, 900, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
     std::vector<CostSample> fitted, others;
     for (std::uint64_t seed = 0; seed < 60; ++seed)
       (seed % 2 == 0 ? fitted : others).push_back(sample_with(truth, seed));
     const KernelCost found = fit_cost(fitted);
     EXPECT_LT(median_error(others, found, true), 1e-3);
-    EXPECT_GT(median_error(others, found, false), 1e-2);  // their factorisations differ from the median
-    EXPECT_GE(found.factorizations, 2);
+    EXPECT_GT(median_error(others, found, false), 1e-2);  // their factorisations are drawn
+    EXPECT_GE(found.factorizations.most, 2);
+    EXPECT_LE(found.factorizations.most, 9);
     EXPECT_LE(found.active_share, 0.9);
   }
   EXPECT_TRUE(std::isnan(median_error({}, {}, true)));
+}
+
+// As many as the law says, rounded.
+TEST(CostFit, FindsHowOftenAStepFactors) {
+  const ExpectedFactorizations law{-0.6, 0.5, -0.3, 50};
+  const KernelCost truth{CostKernel::schur_rows, 1, {}, 1, {20, 900, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
+  std::vector<CostSample> samples;
+  std::vector<CostFeatures> features;
+  for (std::uint64_t seed = 0; seed < 80; ++seed) {
+    samples.push_back(sample_with(truth, seed));
+    CostSample& sample = samples.back();
+    features.push_back(CostCounter(sample.graph, truth.kernel, sample.active_share)
+                           .count(sample.parts.part_of_body, sample.parts.part_count));
+    sample.factorizations = static_cast<int>(std::lround(law.of(features.back())));
+  }
+  const ExpectedFactorizations found = fit_cost(samples).factorizations;
+  double most = 0;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    EXPECT_NEAR(found.of(features[k]), law.of(features[k]), 0.6) << "seed " << k;
+    most = std::max(most, found.of(features[k]));
+  }
+  EXPECT_GT(most, 4);
+  EXPECT_NEAR(found.most, most, 1e-9);
+}
+
+// Steps that are all alike tell nothing about rows and degree.
+TEST(CostFit, IsFiniteWhereStepsAreAlike) {
+  const KernelCost truth{CostKernel::schur_rows, 1, {}, 1, {20, 900, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
+  const CostSample sample = sample_with(truth, 3);
+  const std::vector<CostSample> samples(5, sample);
+  const CostFeatures features = CostCounter(sample.graph, truth.kernel, sample.active_share)
+                                    .count(sample.parts.part_of_body, sample.parts.part_count);
+  EXPECT_NEAR(fit_cost(samples).factorizations.of(features), sample.factorizations, 1e-9);
 }
 
 // Orders of elimination differ, so do the counts by some percent; under schur-bodies the covers do too.

@@ -27,6 +27,8 @@ void expect_near(double expected, double actual, const char* what) {
 }
 
 void expect_equal(const CostFeatures& expected, const CostFeatures& actual) {
+  EXPECT_EQ(expected.bodies, actual.bodies);
+  EXPECT_EQ(expected.edges, actual.edges);
   EXPECT_EQ(expected.rows, actual.rows);
   EXPECT_EQ(expected.cut_rows, actual.cut_rows);
   EXPECT_EQ(expected.cover_bodies, actual.cover_bodies);
@@ -99,7 +101,7 @@ TEST(CostModel, is_the_sum_of_its_terms) {
   const Partition partition = random_partition(random, graph.body_count());
   const CostFeatures features =
       CostCounter(graph, CostKernel::schur_rows, 0.5).count(partition.part_of_body, partition.part_count);
-  KernelCost cost{CostKernel::schur_rows, 1, 3, 0.5, {}};
+  KernelCost cost{CostKernel::schur_rows, 1, ExpectedFactorizations::always(3), 0.5, {}};
   std::iota(cost.cost.begin(), cost.cost.end(), 1.0);
   double local = 0, forming = 0, blocks = 0, entries = features.interface_entries;
   for (const PartCost& part : features.parts) {
@@ -114,6 +116,19 @@ TEST(CostModel, is_the_sum_of_its_terms) {
   expect_near(1e-6 * (once_ns + 3 * pass_ns), modelled_ms(features, cost), "ms");
 }
 
+TEST(ExpectedFactorizations, follow_rows_and_degree_within_what_was_fitted) {
+  CostFeatures features;
+  features.rows = 100, features.bodies = 10, features.edges = 25;
+  const ExpectedFactorizations law{0.5, 0.25, -0.1, 5};
+  EXPECT_NEAR(law.of(features), std::exp(0.5 - 0.25) * std::pow(100, 0.25), 1e-12);
+  features.rows = 1000000;
+  EXPECT_EQ(law.of(features), 5);
+  features.edges = 1000;
+  EXPECT_EQ(law.of(features), 1);
+  EXPECT_EQ(law.of({}), std::exp(0.5));  // no rows
+  EXPECT_NEAR(ExpectedFactorizations::always(7).of(features), 7, 1e-12);
+}
+
 TEST(PartitionCost, stays_what_it_is_from_scratch) {
   for (const CostKernel kernel : {CostKernel::schur_rows, CostKernel::schur_bodies}) {
     int moves = 0;
@@ -121,7 +136,7 @@ TEST(PartitionCost, stays_what_it_is_from_scratch) {
       Random random(seed);
       const BodyGraph graph = pile(random, 4, 4, 2).graph();
       Partition partition = random_partition(random, graph.body_count());
-      KernelCost cost{kernel, random.integer(1, 2), 3, 0.4, {}};
+      KernelCost cost{kernel, random.integer(1, 2), ExpectedFactorizations::always(3), 0.4, {}};
       std::iota(cost.cost.begin(), cost.cost.end(), 1.0);
       PartitionCost time(graph, cost, partition);
       for (int k = 0; k < 60; ++k) {
@@ -239,7 +254,7 @@ TEST(Auto, alone_chooses_among_kernels) {
 
 // auto where one term of the model costs and nothing else does.
 std::unique_ptr<Partitioner> auto_by_term(int term) {
-  KernelCost cost{CostKernel::schur_rows, 1, 1, 1, {}};
+  KernelCost cost{CostKernel::schur_rows, 1, {}, 1, {}};
   cost.cost[term] = 1;
   const std::string path = testing::TempDir() + "auto_test.toml";
   std::ofstream(path, std::ios::binary) << calibration_text({}, {cost});
@@ -295,7 +310,7 @@ TEST(Auto, keeps_a_choice_that_was_made_before) {
 }
 
 std::vector<KernelCost> some_costs() {
-  KernelCost one{CostKernel::schur_rows, 1, 6, 0.25, {}};
+  KernelCost one{CostKernel::schur_rows, 1, {-0.5, 0.25, -0.125, 6}, 0.25, {}};
   std::iota(one.cost.begin(), one.cost.end(), 0.5);
   KernelCost two = one;
   two.threads = 2;
@@ -309,7 +324,10 @@ TEST(Calibration, reads_what_it_writes) {
   ASSERT_EQ(read.kernels.size(), 2u);
   for (int k : {0, 1}) {
     EXPECT_EQ(read.kernels[k].threads, k + 1);
-    EXPECT_EQ(read.kernels[k].factorizations, 6);
+    EXPECT_EQ(read.kernels[k].factorizations.constant, -0.5);
+    EXPECT_EQ(read.kernels[k].factorizations.per_log_row, 0.25);
+    EXPECT_EQ(read.kernels[k].factorizations.per_degree, -0.125);
+    EXPECT_EQ(read.kernels[k].factorizations.most, 6);
     EXPECT_EQ(read.kernels[k].active_share, 0.25);
     EXPECT_EQ(read.kernels[k].cost, some_costs()[k].cost);
   }
@@ -341,20 +359,20 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 TEST(Calibration, names_the_line_that_is_wrong) {
   const std::string good = calibration_text({}, some_costs());
   EXPECT_EQ(error_of(good), "");
-  EXPECT_EQ(error_of(""), "text is no calibration: schema = \"cleave-calibration-1\" is missing");
+  EXPECT_EQ(error_of(""), "text is no calibration: schema = \"cleave-calibration-2\" is missing");
   EXPECT_EQ(error_of(replaced(good, "schur-rows", "schur-row")),
             "text: line 3: 'schur-row' is unknown (did you mean 'schur-rows'?); choices: schur-rows, "
             "schur-bodies, monolithic");
   EXPECT_EQ(error_of(replaced(good, "active_share = 0.25", "active_share = 2")),
-            "text: line 5: active_share: 2 is not in [0, 1]");
+            "text: line 8: active_share: 2 is not in [0, 1]");
   EXPECT_EQ(error_of(replaced(good, "active_share = 0.25\n", "")),
             "text lacks active_share of [schur-rows.threads-1]");
   EXPECT_EQ(error_of(replaced(good, "threads-2", "threads-1")),
-            "text: line 17: [schur-rows.threads-1] stands twice");
+            "text: line 20: [schur-rows.threads-1] stands twice");
   EXPECT_EQ(error_of(replaced(good, "us_per_solve = 0.5", "us_per_solve = -1")),
-            "text: line 6: us_per_solve: -1 is not in [0, inf)");
+            "text: line 9: us_per_solve: -1 is not in [0, inf)");
   EXPECT_EQ(error_of(replaced(good, "us_per_solve", "us_per_solves")).substr(0, 43),
-            "text: line 6: 'us_per_solves' is unknown (d");
+            "text: line 9: 'us_per_solves' is unknown (d");
 }
 
 TEST(Calibration, is_known_once_it_was_read) {

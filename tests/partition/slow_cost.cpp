@@ -40,11 +40,13 @@ void count_rows(const BodyGraph& graph, std::span<const int> part_of_body, CostF
     ++part.bodies;
     part.rows += graph.fixed_rows(i);
     features.rows += graph.fixed_rows(i);
+    ++features.bodies;
     for (int k = graph.first(i); k < graph.last(i); ++k) {
       const int j = graph.neighbour(k), rows = graph.weight(k, EdgeWeight::rows);
       if (part_of_body[i] != part_of_body[j]) part.cut_rows += rows;
       if (j < i) continue;
       features.rows += rows;
+      ++features.edges;
       (part_of_body[i] == part_of_body[j] ? part.rows : features.cut_rows) += rows;
     }
   }
