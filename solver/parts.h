@@ -5,11 +5,14 @@
 //                   parts, then the inner nodes, each the union of its children. Every parent has a greater
 //                   number than its children; -1 for the root, which is the last node and the only root. A
 //                   single part is its own root.
+//   kernel          for which they were chosen, as the registry calls it; empty: for none. Solvers of a named kernel do
+//                   not look at it.
 #pragma once
 
 #include <concepts>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace cleave {
@@ -26,6 +29,7 @@ struct Parts {
 
   std::span<const int> part_of_body;
   std::span<const int> parent_of_part;
+  std::string_view kernel;
 };
 
 // Keeps its scratch, so that parts as large as those before allocate nothing.

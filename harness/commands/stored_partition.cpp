@@ -87,6 +87,11 @@ PartitionOrigin read_origin(const StoredPartition& partition) {
   return *origin;
 }
 
+std::string read_choice(const StoredPartition& partition) {
+  const StoredParameter* choice = find_stored(partition, kChoice);
+  return choice == nullptr ? "" : choice->text;
+}
+
 Algorithm read_stored_refiner(const StoredPartition& partition) {
   return read_stored(partition, "refiner", partition.refiner, kOfRefiner);
 }
@@ -104,7 +109,7 @@ SplitSetup read_split_setup(const StoredPartition& partition) {
   if (has_order_of_file(partition)) throw std::invalid_argument("the file of its body order is not here");
   if (const StoredParameter* order = find_stored(partition, kBodyOrder))
     setup.order = read_body_order(kBodyOrder, order->text);
-  if (const StoredParameter* choice = find_stored(partition, kChoice)) setup.choice = choice->text;
+  setup.choice = read_choice(partition);
   if (const StoredParameter* arity = find_stored(partition, kArity))
     setup.arity = static_cast<int>(parse_integer("--arity", arity->text, kArities));
   else if (!partition.parent_of_part.empty())

@@ -16,6 +16,9 @@ StoredPartition stored_partition(const SplitSetup& setup, std::vector<int> part_
 // Throws std::invalid_argument for a word that is none.
 PartitionOrigin read_origin(const StoredPartition& partition);
 
+// What a partitioner chose to make the parts; empty where it chose nothing.
+std::string read_choice(const StoredPartition& partition);
+
 // Whether bodies were numbered by a file, without which nobody can split them again.
 bool has_order_of_file(const StoredPartition& partition);
 

@@ -195,6 +195,8 @@ void check_solved_row(const ProblemFile& file, const std::string& label, const s
     check.same_cells(found, kPartitionColumns);
     check_grown(file, partition->second, found, check);
     check_origin(partition->second, check);
+    const std::string choice = read_choice(partition->second);
+    check.same_text("auto_choice", choice.empty() ? "-" : choice);
     // A solver that says schur-rows and works on something else is found out by its interface.
     if (solution.kernel == "schur-rows")
       check.same_text("interface_unknowns", std::to_string(found.interface_rows));

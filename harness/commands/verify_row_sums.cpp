@@ -7,10 +7,14 @@
 #include <optional>
 #include <type_traits>
 
+#include "harness/base/algorithm.h"
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
+#include "harness/experiment/chosen_kernel.h"
 #include "harness/experiment/splitter.h"
 #include "harness/experiment/step_record.h"
+#include "partition/partition.h"
+#include "solver/registry.h"
 #include "solver/step_problem.h"
 
 namespace cleave {
@@ -49,6 +53,7 @@ class RowAlone {
     check_sizes();
     check_partition();
     if (!has_result(text("status"))) return;
+    check_kernel();
     check_model();
     check_times();
     check_residuals();
@@ -129,6 +134,13 @@ class RowAlone {
       require(unknowns <= most && std::fmod(unknowns, 6) == 0 && (!is_full || (unknowns > 0) == (most > 0)),
               "interface_unknowns", "a multiple of 6, at most " + number_text(most));
     }
+  }
+
+  // Kernel `chosen` is the one for which the parts were chosen.
+  void check_kernel() {
+    if (solver_halves(algorithm_name(text("solver"))).kernel != kChosenKernel) return;
+    const std::string_view wanted = kernel_of_choice(text("auto_choice"));
+    require(text("kernel") == wanted, "kernel", std::string(wanted) + ", as auto_choice says");
   }
 
   // Every pass after the first one is for rows that came back.

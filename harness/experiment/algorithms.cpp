@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "harness/base/names.h"
+#include "harness/experiment/chosen_kernel.h"
 #include "harness/experiment/friction.h"
 #include "harness/world/ode_baselines.h"
 #include "partition/registry.h"
@@ -37,18 +38,13 @@ std::vector<AlgorithmKind> make_kinds() {
   };
   // --solver takes pairs too, and --advance whatever --solver takes.
   kinds[3].names = all_solver_names();
+  std::ranges::copy(chosen_kernel_solvers(), std::back_inserter(kinds[3].names));
+  kinds[6].entries.push_back(chosen_kernel());
+  kinds[6].names.push_back(chosen_kernel().name);
   return kinds;
 }
 
 bool is_solver(const std::string& option) { return option == "solver" || option == "advance"; }
-
-std::vector<std::string> names_for(const std::string& option) {
-  std::vector<std::string> names;
-  for (const AlgorithmKind& kind : algorithm_kinds())
-    if (kind.option == option || (is_solver(option) && std::string(kind.option) == "solver"))
-      std::ranges::copy(kind.names, std::back_inserter(names));
-  return names;
-}
 
 bool has_parameter(const AlgorithmEntry& entry, const std::string& parameter) {
   return std::ranges::count(entry.parameters, parameter, &Parameter::name) > 0;
@@ -135,6 +131,14 @@ std::span<const AlgorithmKind> algorithm_kinds() {
   return kinds;
 }
 
+std::vector<std::string> names_for(const std::string& option) {
+  std::vector<std::string> names;
+  for (const AlgorithmKind& kind : algorithm_kinds())
+    if (kind.option == option || (is_solver(option) && std::string(kind.option) == "solver"))
+      std::ranges::copy(kind.names, std::back_inserter(names));
+  return names;
+}
+
 std::string owners_of(const std::string& parameter) {
   std::vector<std::string> owners;
   for (const AlgorithmKind& kind : algorithm_kinds()) {
@@ -164,7 +168,9 @@ std::vector<Parameter> parameters_of(const std::string& option, const std::strin
     if (!asked || std::ranges::count(kind.names, name) == 0) continue;
     for (const AlgorithmEntry& entry : kind.entries)
       if (entry.name == name && !entry.parameters.empty()) return entry.parameters;
-    return is_solver(option) ? solver_parameters(name) : std::vector<Parameter>{};
+    if (!is_solver(option)) return {};
+    const std::vector<Parameter> chosen = chosen_kernel_parameters(name);
+    return chosen.empty() ? solver_parameters(name) : chosen;
   }
   throw std::logic_error("--" + option + " has no " + name);
 }
@@ -219,6 +225,7 @@ bool needs_groups(const Algorithm& partitioner) {
 std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, const SolveOptions& options,
                                         const StepContext& context) {
   if (std::unique_ptr<StepSolver> ode = make_ode_baseline(solver, context)) return ode;
+  if (std::unique_ptr<StepSolver> chosen = make_chosen_kernel_solver(solver, options)) return chosen;
   return make_step_solver(solver, options);
 }
 

@@ -32,6 +32,9 @@ std::span<const AlgorithmKind> algorithm_kinds();
 // Values given for all algorithms that have a parameter (--max-bodies 30), by parameter.
 using CommonValues = std::map<std::string, std::string>;
 
+// All that an option can name, of all its kinds.
+std::vector<std::string> names_for(const std::string& option);
+
 // Throws std::invalid_argument when the text names no algorithm of that option.
 void check_algorithm(const std::string& option, const std::string& text);
 

@@ -17,7 +17,10 @@ namespace {
 
 // What the solver is handed; a solver that ignores parts receives none.
 Parts solver_parts(const std::optional<Split>& split) {
-  return split ? Parts(split->parts.part_of_body, split->parent_of_part) : Parts();
+  if (!split) return {};
+  Parts parts(split->parts.part_of_body, split->parent_of_part);
+  parts.kernel = kernel_of_choice(split->parts.choice);
+  return parts;
 }
 
 bool all_finite(std::span<const double> values) {

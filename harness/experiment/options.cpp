@@ -9,6 +9,7 @@
 
 #include "harness/base/hash.h"
 #include "harness/base/names.h"
+#include "harness/experiment/chosen_kernel.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/memory_limit.h"
 #include "harness/experiment/splitter.h"
@@ -128,8 +129,8 @@ void read_friction(RunOptions& options) {
 // Replaces one or both halves of every solver name.
 void override_solvers(const Given& given, RunOptions& options) {
   if (!given.contains("strategy") && !given.contains("kernel")) return;
-  if (given.contains("strategy")) check_name("--strategy", options.strategy, names_of(strategy_table()));
-  if (given.contains("kernel")) check_name("--kernel", options.kernel, names_of(kernel_table()));
+  if (given.contains("strategy")) check_name("--strategy", options.strategy, names_for("strategy"));
+  if (given.contains("kernel")) check_name("--kernel", options.kernel, names_for("kernel"));
   std::vector<std::string> changed;
   for (const Algorithm& solver : options.solvers) {
     SolverHalves halves = solver_halves(solver.name);
@@ -175,6 +176,9 @@ std::string why_unable(const Algorithm& partitioner, const RunOptions& options) 
   for (const Algorithm& solver : options.solvers)
     if (arity_of(solver) && !keeps_to_bound)
       return "which keeps to no max-bodies, as " + solver.text + " needs";
+  for (const Algorithm& solver : options.solvers)
+    if (solver_halves(solver.name).kernel == kChosenKernel && !partitioner.settings.has("cost-kernel"))
+      return "which chooses its parts for no kernel, as " + solver.text + " needs";
   const bool has_groups = options.scene.name.empty() || names_groups(options.scene);
   if (needs_groups(partitioner) && !has_groups)
     return "which splits by groups of bodies, and scene " + options.scene.name + " names none";

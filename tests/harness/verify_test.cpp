@@ -279,6 +279,7 @@ const std::vector<std::string> kComparedColumns = {
     "part_condition_max",
     "strategy",
     "kernel",
+    "auto_choice",
     "solution_hash",
     "interface_unknowns"  // a schur that works on the whole system has no interface
 };
