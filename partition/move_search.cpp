@@ -19,14 +19,25 @@ MoveSearch::MoveSearch(const BodyGraph& graph, EdgeWeight unit, int most_bodies,
 void MoveSearch::restart() {
   bodies_ = part_sizes(partition_);
   is_locked_ = stays_;
-  for (std::vector<Exchange>& parked : parked_) parked.clear();
-  moves_.clear();
+  forget_moves();
   for (int i = 0; i < graph_.body_count(); ++i) push_moves(i);
+}
+
+void MoveSearch::restart_at(int body) {
+  forget_moves();
+  push_moves(body);
+}
+
+void MoveSearch::forget_moves() {
+  for (const int part : parked_at_) parked_[part].clear();
+  parked_at_.clear();
+  moves_.clear();
 }
 
 void MoveSearch::push_moves(int body) {
   if (is_locked_[body]) return;
   for (const MoveGain& move : gains_.of(body, partition_.part_of_body)) {
+    ++gains_counted_;
     if (kind_ == MoveKind::all || move.gain > 0) moves_.push({move.gain, body, move.part, version_[body]});
   }
 }
@@ -35,13 +46,10 @@ void MoveSearch::push_moves(int body) {
 bool MoveSearch::park_if_blocked(const Exchange& move) {
   const int source = partition_.part_of_body[move.first];
   const int target = move.second;
-  if (bodies_[target] >= most_bodies_) {
-    parked_[target].push_back(move);
-  } else if (bodies_[source] == 1) {
-    parked_[source].push_back(move);
-  } else {
-    return false;
-  }
+  const int part = bodies_[target] >= most_bodies_ ? target : bodies_[source] == 1 ? source : -1;
+  if (part < 0) return false;
+  if (parked_[part].empty()) parked_at_.push_back(part);
+  parked_[part].push_back(move);
   return true;
 }
 
@@ -58,6 +66,12 @@ std::optional<Exchange> MoveSearch::find() {
     if (move.tag == version_[move.first] && !is_locked_[move.first] && !park_if_blocked(move)) return move;
   }
   return std::nullopt;
+}
+
+void MoveSearch::put_back(int body, int from) {
+  --bodies_[partition_.part_of_body[body]];
+  ++bodies_[from];
+  partition_.part_of_body[body] = from;
 }
 
 void MoveSearch::make(const Exchange& move) {

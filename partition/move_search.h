@@ -1,4 +1,4 @@
-// What fm and fm-hill share: the allowed move of greatest gain, again and again.
+// What all that move single bodies share: the allowed move of greatest gain, again and again.
 //
 // A move takes body i of part A into a part B adjacent to i; its gain is D_i(B) (gains.h). It is allowed when A keeps at least
 // one body and B has at most most_bodies after it, and when i is not locked. Ties go to the lowest body, then to the lowest
@@ -27,13 +27,22 @@ class MoveSearch {
   std::optional<Exchange> find();
   void make(const Exchange& move);
   void lock(int body) { is_locked_[body] = 1; }
+  void release(int body) { is_locked_[body] = stays_[body]; }
   // Every body that does not stay is free again, and the partition may have been changed.
   void restart();
+  // The search goes on with the moves of this body alone and, after each that is made, those of the bodies next to it.
+  // What is locked stays so.
+  void restart_at(int body);
+  // Takes back what was made last of those not yet taken back; a restart must follow before the next find().
+  void put_back(int body, int from);
+  // Gains worked out since it was made: what all this costs, but for a logarithm.
+  long gains_counted() const { return gains_counted_; }
 
  private:
   void push_moves(int body);
   bool park_if_blocked(const Exchange& move);
   void unpark(int part);
+  void forget_moves();
 
   const BodyGraph& graph_;
   Partition& partition_;
@@ -45,7 +54,9 @@ class MoveSearch {
   std::vector<char> stays_;      // (n)
   std::vector<char> is_locked_;  // (n)
   std::vector<std::vector<Exchange>> parked_;  // (parts)
+  std::vector<int> parked_at_;                 // parts where some were parked since the last restart
   ExchangeHeap moves_;
+  long gains_counted_ = 0;
 };
 
 }  // namespace cleave

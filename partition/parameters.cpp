@@ -102,7 +102,7 @@ const Parameter& merge_small() {
   static const Parameter parameter{.name = "merge-small",
                                    .kind = Kind::flag,
                                    .default_value = "false",
-                                   .help = "fold small parts that growing leaves over into their neighbours",
+                                   .help = "mend grown parts: as many as wanted, and fewer rows cut",
                                    .source = "partition/README.md"};
   return parameter;
 }

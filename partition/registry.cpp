@@ -304,8 +304,7 @@ std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm) {
   made->promise(promise, max_bodies, grown_bodies);
   if (!settings.has("merge-small") || !settings.flag("merge-small")) return made;
   made = merge_small(std::move(made), *max_bodies);
-  made->promise({.contiguous = promise.contiguous, .at_most_grown_bodies = true}, max_bodies,
-                most_merged_bodies(*max_bodies));
+  made->promise({.at_most_grown_bodies = true}, max_bodies, most_merged_bodies(*max_bodies));
   return made;
 }
 

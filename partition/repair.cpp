@@ -7,7 +7,6 @@
 #include "partition/move_search.h"
 
 namespace cleave {
-namespace {
 
 Partition closed_up(std::span<const int> part_of_body) {
   Partition partition{{part_of_body.begin(), part_of_body.end()}, 0};
@@ -20,6 +19,8 @@ Partition closed_up(std::span<const int> part_of_body) {
   for (int& part : partition.part_of_body) part = part < 0 ? -1 : id[part];
   return partition;
 }
+
+namespace {
 
 // Joins bodies without a part, one at a time.
 class Joining {

@@ -18,6 +18,9 @@
 
 namespace cleave {
 
+// Step 1. part_of_body: (n) any numbers from 0, or -1, which stays.
+Partition closed_up(std::span<const int> part_of_body);
+
 // Steps 1 and 2. part_of_body: (n) ids of the earlier partition, any numbers from 0, or -1 for a body without a part.
 // most_bodies >= 1. Throws std::invalid_argument where part_of_body has not one entry a body.
 Partition take_over(const BodyGraph& graph, std::span<const int> part_of_body, int most_bodies);

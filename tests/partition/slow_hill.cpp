@@ -59,10 +59,10 @@ std::size_t best_moment(const Cut& cut, const std::vector<std::vector<int>>& mom
 
 using Key = std::tuple<long, int, int>;  // least: greatest gain, then lowest bodies or parts
 
-std::optional<Key> best_move(const BodyGraph& graph, const Cut& cut, int most, const std::set<int>& locked,
-                             const std::vector<int>& parts, int part_count) {
+std::optional<Key> best_move(const std::set<int>& known, const Cut& cut, int most,
+                             const std::set<int>& locked, const std::vector<int>& parts, int part_count) {
   std::optional<Key> best;
-  for (int body = 0; body < graph.body_count(); ++body) {
+  for (const int body : known) {
     if (locked.contains(body) || bodies_in(parts[body], parts) == 1) continue;
     for (int part = 0; part < part_count; ++part) {
       if (part == parts[body] || cut.into(body, part, parts) == 0 || bodies_in(part, parts) >= most) continue;
@@ -90,27 +90,39 @@ std::optional<Key> best_swap(const Cut& cut, const std::set<int>& locked, int a,
 
 }  // namespace
 
+std::set<int> SlowClimb::run(std::set<int> known, std::set<int> locked, Partition& partition) const {
+  const Cut cut(graph, unit);
+  std::vector<std::vector<int>> moments{partition.part_of_body};
+  std::vector<int> moved;
+  while (static_cast<int>(moments.size() - 1 - best_moment(cut, moments)) < patience) {
+    std::vector<int> parts = moments.back();
+    const auto move = best_move(known, cut, most_bodies, locked, parts, partition.part_count);
+    if (!move) break;
+    const int body = std::get<1>(*move);
+    parts[body] = std::get<2>(*move);
+    locked.insert(body);
+    known.insert(graph.neighbours(body).begin(), graph.neighbours(body).end());
+    moved.push_back(body);
+    moments.push_back(parts);
+  }
+  const std::size_t best = best_moment(cut, moments);
+  partition.part_of_body = moments[best];
+  return {moved.begin(), moved.begin() + static_cast<std::ptrdiff_t>(best)};
+}
+
 RefineSummary slow_fm_hill(const BodyGraph& graph, const RefineOptions& options, Partition& partition) {
   const Cut cut(graph, options.edge_weight);
   const double most = std::floor((1 + options.max_growth) * options.max_bodies + 1e-9);
   const int bound = static_cast<int>(std::min<double>(graph.body_count(), most));
+  std::set<int> all;
+  for (int body = 0; body < graph.body_count(); ++body) all.insert(body);
+  const SlowClimb climb{graph, options.edge_weight, bound, kPatience};
   RefineSummary summary;
   summary.cut_before = cut.total(partition.part_of_body);
   for (bool again = true; again;) {
-    std::vector<std::vector<int>> moments{partition.part_of_body};
-    std::set<int> locked;
-    while (static_cast<int>(moments.size() - 1 - best_moment(cut, moments)) < kPatience) {
-      std::vector<int> parts = moments.back();
-      const auto move = best_move(graph, cut, bound, locked, parts, partition.part_count);
-      if (!move) break;
-      parts[std::get<1>(*move)] = std::get<2>(*move);
-      locked.insert(std::get<1>(*move));
-      moments.push_back(parts);
-    }
-    const std::size_t best = best_moment(cut, moments);
-    partition.part_of_body = moments[best];
-    summary.exchanges += static_cast<int>(best);
-    again = best > 0;
+    const std::set<int> kept = climb.run(all, {}, partition);
+    summary.exchanges += static_cast<int>(kept.size());
+    again = !kept.empty();
   }
   summary.cut_after = cut.total(partition.part_of_body);
   return summary;
