@@ -7,9 +7,9 @@ import unittest
 import stored_data
 from synthetic import ROOT, SCRIPTS, run_script
 
-from cleave_scripts.documents import accuracy, campaigns, cuts, friction, hidden, markers, paper_claims, paper_table, sets, speed, stability, worth
+from cleave_scripts.documents import accuracy, campaigns, cuts, friction, hidden, large, markers, paper_claims, paper_table, sets, speed, stability, worth
 from cleave_scripts.documents.stored import NoResults, Stored
-from cleave_scripts.measurements import extremes_steps
+from cleave_scripts.measurements import extremes_steps, large_scenes, running_simulation
 from cleave_scripts.measurements.reference_stages import STAGES
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.table import text
@@ -26,7 +26,7 @@ class CheckoutTest(unittest.TestCase):
 
     def test_every_part_stands_in_a_document_and_every_document_has_one(self):
         found = [markers.names((ROOT / name).read_text()) for name in DOCUMENTS]
-        modules = (accuracy, campaigns, cuts, friction, hidden, paper_claims, paper_table, sets, speed, stability, worth)
+        modules = (accuracy, campaigns, cuts, friction, hidden, large, paper_claims, paper_table, sets, speed, stability, worth)
         self.assertEqual(sorted(sum(found, [])), sorted(name for module in modules for name in module.BLOCKS))
         self.assertTrue(all(found))
 
@@ -50,7 +50,8 @@ class CheckoutTest(unittest.TestCase):
 
     def columns(self):
         """{small CSV file: its columns} as the commands write them."""
-        written = {"extremes.csv": set(extremes_steps.WRITTEN)}
+        written = {"extremes.csv": set(extremes_steps.WRITTEN), "running_simulation.csv": set(running_simulation.COLUMNS),
+                   "large_scenes.csv": set(large_scenes.COLUMNS)}
         for command in ("two_threads", "modelled_workers", "busy_machine", "cold_starts", "karger", "partition_over_time", "ablation"):
             listed = re.search(r"^COLUMNS = \((.*?)\)", (SCRIPTS / command).read_text(), re.M | re.S)[1]
             written[f"{command}.csv"] = set(re.findall(r'"(\w+)"', listed))

@@ -46,6 +46,28 @@ def two_threads(root):
     write_csv(root / "two_threads.csv", two_threads_rows())
 
 
+def running_simulation_rows(sessions=(0, 1)):
+    """The third round is slow, and one of its solves misses the limit."""
+    return [{"scene": "rock_pile", "bodies": 200, "step": step, "session": session, "round": number, "rows": 1000 * step, "factorizations": 3,
+             "factor_reuses": 1, "cg_iterations": 2, "t_s_ms": t_s_ms if number < 3 else 50, "sweep_ms": 0.02 * step if number < 3 else 9,
+             "status": "not_converged" if (number, step) == (3, 2) else "ok"}
+            for session in sessions for number in (1, 2, 3) for step, t_s_ms in ((1, 1), (2, 5))]
+
+
+# Scene, bodies, threads: rows, factorisations, t_s in ms.
+LARGE = {("rock_pile", 10000, 2): (100000, 5, 500), ("rock_pile", 100000, 2): (1000000, 10, 15000),
+         ("silo", 10000, 1): (300000, 4, 900), ("silo", 10000, 2): (300000, 4, 600)}
+
+
+def large_scenes_rows():
+    """Everything takes ten times as long in the third round, dense factorisations too."""
+    return [{"scene": scene, "bodies": bodies, "threads": threads, "round": number, "rows": rows, "factorizations": factorizations,
+             "kinetic_energy_j": 200, "t_s_ms": t_s_ms * slow, "t_s_factor_local_ms": 100 * slow / threads, "factor_mflop_local": 1100,
+             "factor_mflop_done": 4000, "dissection_mflop": 1000 if scene == "silo" else "nan", "dense_gflop_per_s": 50 * threads / slow,
+             "peak_memory_mb": 2 * bodies / 100 + number}
+            for number, slow in ((1, 1), (2, 1), (3, 10)) for (scene, bodies, threads), (rows, factorizations, t_s_ms) in LARGE.items()]
+
+
 def cold_starts(root):
     rows = [{"seed": 1, "step": step, "rows": 500 + 500 * step, "factorizations_cold": 4 + 2 * step,
              "factorizations_warm": 3} for step in range(5)]

@@ -36,6 +36,8 @@ SETS = {
     "partition_benchmark.json": "partitioners and refiners, METIS and SCOTCH among them, on recorded steps and synthetic piles",
     "two_threads.csv": "recorded steps with one and with two threads, in turn",
     "modelled_workers.csv": "recorded steps with one and with two threads, in turn, and what the model of the first says",
+    "running_simulation.csv": "steps of running simulations with and without `--session`, in sweeps of Gauss-Seidel",
+    "large_scenes.csv": "a step of rock piles and silos of up to 100000 bodies",
     "ablation.csv": "interface rows under the open choices of the method",
     "figures": "the pictures of the README",
 }
@@ -71,6 +73,8 @@ COMMANDS = {
     "partition_benchmark.json": "scripts/benchmark_partitioners",
     "two_threads.csv": "scripts/two_threads",
     "modelled_workers.csv": "scripts/modelled_workers",
+    "running_simulation.csv": "scripts/running_simulation",
+    "large_scenes.csv": "scripts/large_scenes",
     "ablation.csv": "scripts/ablation",
     "figures": "scripts/readme_figures",
 }

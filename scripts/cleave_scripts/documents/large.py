@@ -1,0 +1,29 @@
+"""Running simulations and very large scenes."""
+from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements import large_scenes as scenes
+from cleave_scripts.measurements import running_simulation as running
+
+RUNNING = ("running_simulation.csv", "scripts/running_simulation")
+LARGE = ("large_scenes.csv", "scripts/large_scenes")
+
+
+def _rounds(rows):
+    return len({row["round"] for row in rows})
+
+
+def running_simulation(stored):
+    rows = need(stored.table(*RUNNING), "running simulations", "session", "sweep_ms")
+    return (f"`{running.SOLVER}`, one thread, warm from the step before, every step solved; medians of {_rounds(rows)} rounds, then means over "
+            f"the steps (`{RUNNING[1]}`; {stored.origin(RUNNING[0])}). A sweep is one of `{running.SWEEPER}` on the same steps in the same "
+            f"run:\n\n{running.markdown(rows)}")
+
+
+def large_scenes(stored):
+    rows = need(stored.table(*LARGE), "large scenes", "dissection_mflop", "dense_gflop_per_s")
+    piles, silos = scenes.markdown(rows)
+    return (f"A step by `exact`, from the impulses recorded with it, medians of {_rounds(rows)} replays (`{LARGE[1]}`; {stored.origin(LARGE[0])}). "
+            f"Rock piles on two threads:\n\n{piles}\n\nSilos; the dense factorisation is that of {scenes.DENSE_ROWS} rows on as many "
+            f"threads, in the same run:\n\n{silos}")
+
+
+BLOCKS = {"running_simulation": running_simulation, "large_scenes": large_scenes}

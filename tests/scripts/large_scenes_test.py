@@ -1,0 +1,162 @@
+"""scripts/large_scenes: its own count of a factorisation, what is made of its rows, and the command with stand-ins."""
+import csv
+import os
+import pathlib
+import tempfile
+import unittest
+import unittest.mock
+
+import numpy
+import stored_data
+from stand_in import StandInCase
+from synthetic import PROGRAM, ROOT
+
+from cleave_scripts.documents import large
+from cleave_scripts.documents.stored import Stored
+from cleave_scripts.measurements import large_scenes
+from cleave_scripts.measurements.dissection import Graph, dissection_mflop, factor_mflop, graph_of, order_by_metis
+from cleave_scripts.results.programs import record, replay
+
+
+def grid(width):
+    """Every node of a square and its neighbours in x and y."""
+    node = numpy.arange(width * width).reshape(width, width)
+    return Graph(width * width, numpy.concatenate([numpy.stack([node[:-1], node[1:]], -1).reshape(-1, 2),
+                                                   numpy.stack([node[:, 1:], node[:, :-1]], -1).reshape(-1, 2)]))
+
+
+def counted_densely(graph, order):
+    """Sum of squared column counts, by eliminating in a matrix that says where something is not zero."""
+    full = numpy.eye(graph.body_count, dtype=bool)
+    for body in range(graph.body_count):
+        full[body, graph.neighbours(body)] = True
+    full = numpy.kron(full[numpy.ix_(order, order)], numpy.ones((6, 6), dtype=bool))
+    flops = 0
+    for column in range(len(full)):
+        below = numpy.flatnonzero(full[column + 1:, column]) + column + 1
+        full[numpy.ix_(below, below)] = True
+        flops += (len(below) + 1)**2
+    return 1e-6 * flops
+
+
+class DissectionTest(unittest.TestCase):
+
+    def test_pairs_count_once_and_in_both_directions(self):
+        graph = Graph(4, numpy.array([[2, 0], [0, 2], [1, 2]]))
+        self.assertEqual([list(graph.neighbours(body)) for body in range(4)], [[2], [2], [0, 1], []])
+
+    def test_arithmetic_is_that_of_an_elimination_in_any_order(self):
+        graph = grid(5)
+        for order in (numpy.arange(25), numpy.random.default_rng(1).permutation(25), order_by_metis(graph)):
+            self.assertAlmostEqual(factor_mflop(graph, order), counted_densely(graph, order), places=9)
+
+    def test_the_order_holds_every_body_once_and_saves(self):
+        graph = grid(30)
+        order = order_by_metis(graph)
+        self.assertEqual(sorted(order), list(range(900)))
+        self.assertLess(factor_mflop(graph, order), 0.5 * factor_mflop(graph, numpy.arange(900)))
+
+    def test_the_program_counts_alike(self):
+        """In the only order of fill that two boxes have, and in nested dissection, which it takes of so many."""
+        for bodies in (2, 2000):
+            with tempfile.TemporaryDirectory() as scratch:
+                file, = record(PROGRAM, pathlib.Path(scratch) / "steps", "silo", [2], "--bodies", bodies, "--advance", "pgs@sweeps=30",
+                               all_ok=False)
+                row, = replay(PROGRAM, pathlib.Path(scratch) / "replay", [file], "--solver", "exact", "--repeats", 1)
+                self.assertEqual(graph_of(file).body_count, bodies)
+                self.assertAlmostEqual(dissection_mflop(file) / row.number("factor_mflop_local"), 1, places=1 if bodies > 2 else 9)
+
+
+class TablesTest(unittest.TestCase):
+
+    def test_ratios_are_of_one_round_and_medians_over_them(self):
+        root = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+        stored_data.write_csv(root / "large_scenes.csv", stored_data.large_scenes_rows())
+        stored_data.write_provenance(root, "large_scenes.csv")
+        told = large.large_scenes(Stored(root))
+        self.assertIn("medians of 3 replays", told)
+        self.assertIn("| 10000 | 100000 | 5 | 0.0200 | 500 | 1.00 | 1.00 | 0.20 |\n"
+                      "| 100000 | 1000000 | 10 | 0.00200 | 15000 | 1.50 | 1.50 | 2.00 |\n", told)
+        self.assertIn("| 10000 | 1 | 300000 | 4 | 900 | 1.10 | 1.10 | 40.0 | 50.0 | 80 % |\n"
+                      "| 10000 | 2 | 300000 | 4 | 600 | 1.10 | 1.10 | 80.0 | 100 | 80 % |", told)
+
+    def test_a_pile_that_was_slow_beside_a_slow_one_is_not_slower(self):
+        rows = stored_data.large_scenes_rows()
+        ratios = [line[6] for line in large_scenes.pile_lines([row for row in rows if row["round"] == 3])]
+        self.assertEqual(ratios, ["1.00", "1.50"])
+
+
+STAND_IN = f"""#!/usr/bin/python3
+import os, pathlib, sys
+sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+import h5py, numpy
+from synthetic import write_steps
+words = sys.argv[1:]
+given = dict(zip(words, words[1:]))
+with open(os.environ["STAND_IN_LOG"], "a") as log:
+    log.write(" ".join(words) + "\\n")
+out = pathlib.Path(given["--out"])
+if words[0] == "record":
+    out.mkdir(parents=True)
+    count = int(given["--bodies"])
+    with h5py.File(out / f"{{given['--scene']}}_step{{int(given['--at']):06}}.h5", "w") as file:
+        file["mass"] = numpy.zeros((count, 6, 6))
+        file["row_body"] = numpy.array([(0, 1), (1, 0), (0, -1)], dtype=numpy.int32)
+    sys.exit(2)  # as steps that sweeps move are not exact
+else:
+    scene, bodies = pathlib.Path(words[1]).parent.name.rsplit("_", 1)
+    write_steps(out, [dict(scene=scene, bodies=bodies, step=40, threads=given["--threads"], rows=1000, factorizations=2, kinetic_energy_j=1,
+                           t_s_ms=int(bodies), t_s_waiting_ms=0, t_s_factor_local_ms=2, factor_mflop_local=0.01, factor_mflop_done=60,
+                           peak_memory_mb=100, partitioner="-", refiner="-", status=os.environ.get("STAND_IN_STATUS", "ok"))])
+"""
+BENCHMARK = """#!/usr/bin/python3
+import json, os, sys
+with open(os.environ["STAND_IN_LOG"], "a") as log:
+    log.write("benchmark " + " ".join(sys.argv[1:]) + "\\n")
+given = dict(word.split("=", 1) for word in sys.argv[1:])
+json.dump({"benchmarks": [{"name": f"{name}/3000/manual_time", "run_type": "iteration", "gflop_per_s": rate}
+                          for name, rate in (("cholesky:AVX2", 30), ("cholesky:AVX-512", 40), ("cholesky_2", 60))]},
+          open(given["--benchmark_out"], "w"))
+"""
+
+
+class LargeScenesTest(StandInCase):
+    stand_in = STAND_IN
+    script = "large_scenes"
+
+    def setUp(self):
+        super().setUp()
+        beside = self.directory / "tests" / "dense_benchmark"
+        beside.parent.mkdir()
+        beside.write_text(BENCHMARK)
+        beside.chmod(0o755)
+
+    def test_every_round_times_a_dense_factorisation_and_replays_every_scene_alone(self):
+        said = self.run_it("--piles", "10,20", "--silos", 2, "--rounds", 2).stdout
+        calls = self.calls()
+        self.assertEqual([call.partition(" --out")[0] for call in calls[:3]],
+                         [f"record --scene {scene} --at {step} --bodies {bodies} --advance pgs@sweeps=30"
+                          for scene, step, bodies in (("rock_pile", 300, 10), ("rock_pile", 300, 20), ("silo", 40, 2))])
+        self.assertEqual([call.split()[0] for call in calls[3:]], ["benchmark", *["replay"] * 4] * 2)
+        replayed = [(words[1].split("/")[-2], words[words.index("--threads") + 1]) for words in map(str.split, calls[3:]) if words[0] == "replay"]
+        piles, silo = [("rock_pile_10", "2"), ("rock_pile_20", "2")], [("silo_2", "1"), ("silo_2", "2")]
+        self.assertEqual(replayed, piles + silo + silo + piles[::-1])
+        with open(self.directory / "out" / "large_scenes.csv", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual((tuple(rows[0]), len(rows)), (large_scenes.COLUMNS, 8))
+        self.assertEqual([row["dissection_mflop"] for row in rows[:2]], ["nan", "nan"])
+        self.assertIn("| 20 | 1000 | 2 | 0.0500 | 20.0 | 10.0 | 2.00 | 0.10 |", said)
+        pair = 1e-6 * sum(k**2 for k in range(1, 13))
+        self.assertIn(f"| 2 | 1 | 1000 | 2 | 2.00 | 1.0e-5 | {0.01 / pair:.2f} | 30.0 | 40.0 | 75 % |", said)
+        self.assertIn("| 30.0 | 60.0 | 50 % |", said)
+
+    def test_options_and_failures_are_one_line(self):
+        self.check_refused((("--piles", "1"), "--piles has '1', expected a whole number from 2 to 200000"), (("--silos", "4,x"), "--silos has 'x'"),
+                           (("--rounds", 0), "--rounds is '0'"))
+        with unittest.mock.patch.dict(os.environ, STAND_IN_STATUS="not_converged"):
+            self.assertIn("1 of 1 replayed cells are not ok", self.run_it("--piles", 10, "--silos", 2, code=1).stderr.splitlines()[-1])
+        self.assertFalse((self.directory / "out").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()
