@@ -8,6 +8,7 @@
 
 #include "harness/base/names.h"
 #include "harness/experiment/algorithms.h"
+#include "harness/experiment/chosen_kernel.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/options.h"
 #include "harness/experiment/step_record.h"
@@ -203,7 +204,9 @@ TEST(List, ShowsTheRegistries) {
   for (const AlgorithmEntry& entry : ode_baselines()) solvers.push_back(entry.name);
   expect_listed("solvers", solvers);
   expect_listed("strategies", names_of(strategy_table()));
-  expect_listed("kernels", names_of(kernel_table()));
+  std::vector<std::string> kernels = names_of(kernel_table());
+  kernels.emplace_back(kChosenKernel);
+  expect_listed("kernels", kernels);
   expect_listed("frictions", names_of(friction_models()));
   const ProgramResult wrong = run_cleave({"list", "partitoners"});
   EXPECT_EQ(wrong.exit_code, 1);
