@@ -27,7 +27,7 @@ struct CostTerm {
   double (*count)(const CostFeatures& features, int threads);
 };
 
-inline constexpr int kCostTerms = 10;
+inline constexpr int kCostTerms = 11;
 std::span<const CostTerm, kCostTerms> cost_terms();
 
 // Factorisations of a solve: more where there are more rows to decide on, fewer where a body is held by more others, as in a

@@ -126,7 +126,7 @@ CostSample sample_with(const KernelCost& truth, std::uint64_t seed) {
 TEST(CostFit, FindsTheCostsThatMadeTheTimes) {
   for (const int threads : {1, 2}) {
     KernelCost truth{
-        CostKernel::schur_rows, threads, {}, 1, {20, 900, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
+        CostKernel::schur_rows, threads, {}, 1, {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
     std::vector<CostSample> fitted, others;
     for (std::uint64_t seed = 0; seed < 60; ++seed)
       (seed % 2 == 0 ? fitted : others).push_back(sample_with(truth, seed));
@@ -143,7 +143,8 @@ TEST(CostFit, FindsTheCostsThatMadeTheTimes) {
 // As many as the law says, rounded.
 TEST(CostFit, FindsHowOftenAStepFactors) {
   const ExpectedFactorizations law{-0.6, 0.5, -0.3, 50};
-  const KernelCost truth{CostKernel::schur_rows, 1, {}, 1, {20, 900, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
+  const KernelCost truth{
+      CostKernel::schur_rows, 1, {}, 1, {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
   std::vector<CostSample> samples;
   std::vector<CostFeatures> features;
   for (std::uint64_t seed = 0; seed < 80; ++seed) {
@@ -165,7 +166,8 @@ TEST(CostFit, FindsHowOftenAStepFactors) {
 
 // Steps that are all alike tell nothing about rows and degree.
 TEST(CostFit, IsFiniteWhereStepsAreAlike) {
-  const KernelCost truth{CostKernel::schur_rows, 1, {}, 1, {20, 900, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
+  const KernelCost truth{
+      CostKernel::schur_rows, 1, {}, 1, {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
   const CostSample sample = sample_with(truth, 3);
   const std::vector<CostSample> samples(5, sample);
   const CostFeatures features = CostCounter(sample.graph, truth.kernel, sample.active_share)
