@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 namespace cleave {
 namespace {
@@ -11,6 +12,12 @@ using Eigen::Vector3d;
 
 constexpr int kMostSteps = 8;
 constexpr double kLeastFall = 0.5;  // of the residual in a step that is worth the next
+
+// Under Coulomb's law, where steps from afar change the energy little until the last few square it: given up where it does not
+// fall to this share in so many steps.
+constexpr int kMostLawSteps = 30, kMostHalvings = 8, kMostSolves = 12;
+constexpr std::size_t kWatchedSteps = 3;
+constexpr double kLeastEnergyFall = 0.25;
 
 // By the least C_r / d_r, the residual in units of the velocity scale from where it was seen to converge: on piles of 60 to 600
 // rocks with cfm 1e-4 to 1e-14, attempts from ten times as much gained no factorisation or failed.
@@ -39,6 +46,11 @@ Derivative differentiate(double mu, const Vector3d& p) {
                        Vector3d(0, -u[2], u[1])};
   derivative.theta = {1, 0, mu * (p[0] + mu * t) / (length * length * t)};
   return derivative;
+}
+
+void settle_shift(SolveState& state) {
+  state.update_velocity();
+  state.update_shift();
 }
 
 }  // namespace
@@ -82,22 +94,64 @@ void ConeNewton::linearize_cone(SolveState& state, int k) {
   cone.store(moved, state.impulse);
 }
 
-// False where the kernel finds a non-positive pivot.
-bool ConeNewton::step(SolveState& state) {
+// The impulses after a full step. False where the kernel finds a non-positive pivot.
+bool ConeNewton::find_step(SolveState& state) {
   const std::span<const FrictionCone> cones = state.step->set().cones();
   wanted_.assign(state.impulse.size(), 0.0);
   impulse_before_ = state.impulse;
+  if (has_coulomb_) shift_.begin(state, state.slack);
   linearize_rows(state);
   for (int k = 0; k < std::ssize(cones); ++k) linearize_cone(state, k);
   state.update_velocity();
   if (!state.factor()) return false;
   std::ranges::fill(state.f_v, 0.0);
-  for (std::size_t r = 0; r < wanted_.size(); ++r) state.f_r[r] = wanted_[r] - state.slack[r];
-  state.solve();
+  for (int k = 0; k < kMostSolves; ++k) {
+    for (std::size_t r = 0; r < wanted_.size(); ++r) state.f_r[r] = wanted_[r] - state.slack[r];
+    if (has_coulomb_) shift_.add_to_right_hand_side(state);
+    state.solve();
+    ++state.summary->refinements;
+    if (!has_coulomb_ || shift_.is_matched(state)) break;
+  }
   for (std::size_t r = 0; r < wanted_.size(); ++r) state.impulse[r] += state.dlambda[r];
-  state.update_velocity();
-  ++state.summary->refinements;
   return true;
+}
+
+// J, with the residual's rule of which rows are a contact's. Ranges are summed in their order.
+double ConeNewton::energy(SolveState& state) {
+  const std::span<const double> d = state.step->diagonal();
+  range_energy_.assign(state.range_count(), 0.0);
+  state.run_over_rows([&](int first, int last, int range) {
+    for (int r = first; r < last; ++r) {
+      const double residual = state.step->set().residual(r, r + 1, d, state.impulse, state.slack);
+      range_energy_[range] += residual * residual / d[r];
+    }
+  });
+  return std::accumulate(range_energy_.begin(), range_energy_.end(), 0.0);
+}
+
+// All of the step, or under Coulomb's law the first of its halves, quarters, ... that lowers the energy.
+void ConeNewton::take_step(SolveState& state) {
+  settle_shift(state);
+  if (!has_coulomb_) return;
+  const double before = energies_.back();
+  double after = energy(state);
+  for (int k = 0; k < kMostHalvings && !(after < before); ++k) {
+    for (std::size_t r = 0; r < wanted_.size(); ++r) {
+      state.impulse[r] = 0.5 * (state.impulse[r] + impulse_before_[r]);
+    }
+    settle_shift(state);
+    after = energy(state);
+  }
+  energies_.push_back(after);
+}
+
+// Whether the step was worth the next.
+bool ConeNewton::falls(double before, double residual) {
+  if (!has_coulomb_) return residual < kLeastFall * before;
+  const std::size_t count = energies_.size();
+  if (!(energies_[count - 1] < energies_[count - 2])) return false;
+  return count <= kWatchedSteps ||
+         energies_[count - 1] < kLeastEnergyFall * energies_[count - 1 - kWatchedSteps];
 }
 
 double ConeNewton::first_residual(double least_compliance) {
@@ -107,16 +161,21 @@ double ConeNewton::first_residual(double least_compliance) {
 }
 
 double ConeNewton::run(SolveState& state, double target) {
+  has_coulomb_ = std::ranges::any_of(state.step->set().cones(), &FrictionCone::coulomb);
+  state.update_shift();
   double least = state.residual_of_cones();
   best_impulse_ = state.impulse;
-  for (int k = 0; k < kMostSteps && least > target && step(state); ++k) {
-    const double residual = state.residual_of_cones();
-    const double before = least;
+  energies_.reserve(kMostLawSteps + 1);
+  energies_.assign(1, has_coulomb_ ? energy(state) : 0.0);
+  const int most = has_coulomb_ ? kMostLawSteps : kMostSteps;
+  for (int k = 0; k < most && least > target && find_step(state); ++k) {
+    take_step(state);
+    const double residual = state.residual_of_cones(), before = least;
     if (residual < least) least = residual, best_impulse_ = state.impulse;
-    if (!(residual < kLeastFall * before)) break;
+    if (!falls(before, residual)) break;
   }
   state.impulse = best_impulse_;
-  state.update_velocity();
+  settle_shift(state);
   return least;
 }
 

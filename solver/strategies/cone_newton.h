@@ -13,7 +13,13 @@
 //
 //     D_e^-1 = C + d (1 - theta) / theta,    f_e = -d F_e / theta - (w' - w)_e,
 //
-// exact where the rows of a contact have one compliance. Source: Qi and Sun, "A nonsmooth version of Newton's method", Math.
+// exact where the rows of a contact have one compliance.
+//
+// Under Coulomb's law w_n + mu |w_t| takes the place of w_n, with the change of mu |w_t| along the step (step_shift.h). Its steps
+// are halved until the energy sum_r d_r F_r^2 falls (of a contact its largest F). So it ends most steps of piles that are not stiff from the impulses of the
+// step before, and the others from where the interior point stalls.
+//
+// Source: Qi and Sun, "A nonsmooth version of Newton's method", Math.
 // Program. 58, 1993; the derivative: Fukushima, Luo and Tseng, "Smoothing functions for second-order-cone complementarity
 // problems", SIAM J. Optim. 12, 2002.
 #pragma once
@@ -21,24 +27,32 @@
 #include <vector>
 
 #include "solver/solve_state.h"
+#include "solver/strategies/step_shift.h"
 
 namespace cleave {
 
 class ConeNewton {
  public:
-  // Steps from the present impulses, each counted as a refinement, until the residual is at most `target` (m/s) or a step does
-  // not at least halve it. Returns the least residual, whose impulses stay.
+  // Steps from the present impulses until the residual is at most `target` (m/s) or falls too slowly. Each back-substitution
+  // counts as a refinement. Returns the least residual, whose impulses stay, with the shift of their velocities.
   double run(SolveState& state, double target);
 
   // Where an attempt is worth its factorisations: the residual in units of the velocity scale, by the least C_r / d_r.
   static double first_residual(double least_compliance);
 
  private:
-  bool step(SolveState& state);
+  bool find_step(SolveState& state);
+  void take_step(SolveState& state);
+  double energy(SolveState& state);
+  bool falls(double before, double residual);
   void linearize_rows(SolveState& state) const;
   void linearize_cone(SolveState& state, int k);
 
-  std::vector<double> wanted_;                         // (m) on the rows of cones, w - d F / theta
+  bool has_coulomb_ = false;
+  StepShift shift_;
+  std::vector<double> energies_;      // J, before every step and after the last; of Coulomb's law
+  std::vector<double> range_energy_;  // scratch
+  std::vector<double> wanted_;        // (m) on the rows of cones, w - d F / theta
   std::vector<double> impulse_before_, best_impulse_;  // (m)
 };
 

@@ -67,6 +67,12 @@ class InteriorIterate {
   // One iterate, to come back to.
   void keep(const SolveState& state);
   void restore(SolveState& state);
+  // Its impulses alone, with their velocities.
+  void load_kept_impulses(SolveState& state) const {
+    state.impulse = kept_impulse_;
+    state.update_velocity();
+    state.update_shift();
+  }
 
  private:
   void choose_impulses(SolveState& state);

@@ -9,8 +9,9 @@
 // is not yet right, the iteration goes on, and where rounding keeps the set from ever being right, the best interior iterate is
 // the answer if it is within the limit.
 //
-// Under Coulomb's law every direction is that of the law (coulomb_shift.h). The problem is then not convex: where the iteration
-// stalls, status and residual say so.
+// Under Coulomb's law every direction is that of the law (coulomb_shift.h). The problem is then not convex, and the iteration may
+// stall where the Newton method of the end does not: that is tried before the first iteration, from the impulses of the step
+// before, and again where iterations make no progress. Where all of it fails, status and residual say so.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,6 +30,12 @@ namespace {
 constexpr double kShiftAccuracy = 0.1;
 constexpr int kMostShifts = 8;
 
+// Attempts at the end under Coulomb's law: below this error, in units of the velocity scale, and again at this share of it; after
+// so many iterations without progress, and again where the error is this share of the last attempt's.
+constexpr double kFirstLawPolish = 1e-5, kNextLawPolish = 0.1;
+constexpr int kStalledIterations = 5;
+constexpr double kNextStalledPolish = 0.5;
+
 class InteriorPoint : public Strategy {
  public:
   explicit InteriorPoint(const InteriorConstants& constants) : constants_(constants), iterate_(constants) {}
@@ -41,6 +48,9 @@ class InteriorPoint : public Strategy {
   Progress watch(const SolveState& state, double error);
   bool polish(SolveState& state);
   bool polish_cones(SolveState& state, double tolerance);
+  bool polish_best(SolveState& state);
+  bool is_stalled() const;
+  bool end(SolveState& state);
   void step(SolveState& state, double error);
   void adapt_delta(double rounding);
   bool raise_delta();
@@ -50,13 +60,16 @@ class InteriorPoint : public Strategy {
   InteriorConstants constants_;
   InteriorIterate iterate_;
   ConeNewton newton_;
-  std::vector<double> kept_impulse_;
+  std::vector<double> kept_impulse_, present_impulse_;
+  std::vector<double> law_impulse_;  // of the attempts under Coulomb's law, those of the least residual
+  double least_law_residual_ = 0;
+  double last_polish_ = 0;  // the error of the last attempt at the end
   double best_error_ = 0, last_step_ = 1, polish_below_ = 0;
   int since_best_ = 0, grown_ = 0, raises_ = 0;
   double delta_ = 0, least_delta_ = 0, best_delta_ = 0;
   bool has_coulomb_ = false;
   bool is_start_ = true, best_is_start_ = false;  // of cones, whose error is that of the impulses alone
-  bool rounds_ = false;  // there are rows that delta may matter to
+  bool rounds_ = false;                           // there are rows that delta may matter to
 };
 
 // Mehrotra's second-order term is right for a full step only. Where bounds cut the step it can throw products
@@ -96,12 +109,17 @@ void InteriorPoint::step(SolveState& state, double error) {
   iterate_.advance(state, last_step_);
 }
 
-// The semi-smooth Newton method from the interior iterate, which is restored on failure. It knows cones, not Coulomb's law.
+// The semi-smooth Newton method from the interior iterate, which is restored on failure.
 bool InteriorPoint::polish_cones(SolveState& state, double tolerance) {
-  if (has_coulomb_) return false;
-  if (newton_.run(state, tolerance) <= state.step->exact_limit_m_per_s()) return true;
+  const double residual = newton_.run(state, tolerance);
+  if (residual <= state.step->exact_limit_m_per_s()) return true;
+  if (has_coulomb_ && residual < least_law_residual_) {
+    least_law_residual_ = residual;
+    law_impulse_ = state.impulse;
+  }
   state.impulse = kept_impulse_;
   state.update_velocity();
+  state.update_shift();
   return false;
 }
 
@@ -118,6 +136,17 @@ bool InteriorPoint::polish(SolveState& state) {
   if (state.settle(tolerance, settling) && state.residual() <= state.step->exact_limit_m_per_s()) return true;
   state.impulse = kept_impulse_;
   state.update_velocity();
+  return false;
+}
+
+// From the best iterate; on failure the iteration goes on from the present one.
+bool InteriorPoint::polish_best(SolveState& state) {
+  present_impulse_ = state.impulse;
+  iterate_.load_kept_impulses(state);
+  if (polish(state)) return true;
+  state.impulse = present_impulse_;
+  state.update_velocity();
+  state.update_shift();
   return false;
 }
 
@@ -152,8 +181,10 @@ double InteriorPoint::first_polish(double least_compliance) const {
 
 void InteriorPoint::begin(SolveState& state) {
   const double least = state.step->least_relative_compliance();
-  const double first =
-      state.step->set().cones().empty() ? first_polish(least) : ConeNewton::first_residual(least);
+  has_coulomb_ = std::ranges::any_of(state.step->set().cones(), &FrictionCone::coulomb);
+  const double first = has_coulomb_                        ? kFirstLawPolish
+                       : state.step->set().cones().empty() ? first_polish(least)
+                                                           : ConeNewton::first_residual(least);
   polish_below_ = first * state.step->velocity_scale();
   delta_ = constants_.first_delta;
   best_delta_ = delta_;
@@ -162,12 +193,19 @@ void InteriorPoint::begin(SolveState& state) {
   best_error_ = std::numeric_limits<double>::infinity();
   since_best_ = grown_ = raises_ = 0;
   is_start_ = true;
-  has_coulomb_ = std::ranges::any_of(state.step->set().cones(), &FrictionCone::coulomb);
-  iterate_.start(state);
+  least_law_residual_ = last_polish_ = std::numeric_limits<double>::infinity();
+}
+
+// Under Coulomb's law: no progress since iterations, and since the last attempt at the end so much that another may go elsewhere.
+bool InteriorPoint::is_stalled() const {
+  return has_coulomb_ && since_best_ == kStalledIterations &&
+         best_error_ <= kNextStalledPolish * last_polish_;
 }
 
 bool InteriorPoint::run(SolveState& state) {
   begin(state);
+  if (has_coulomb_ && polish(state)) return true;
+  iterate_.start(state);
   const double target = state.options.target_m_per_s * state.step->velocity_scale();
   for (int k = 0; k < state.options.max_iterations; ++k) {
     double error = iterate_.error(state);
@@ -182,7 +220,11 @@ bool InteriorPoint::run(SolveState& state) {
     if (error <= polish_below_) {
       if (polish(state)) return true;
       if (error <= target) break;
-      polish_below_ = std::max(constants_.next_polish * error, target);
+      polish_below_ = std::max((has_coulomb_ ? kNextLawPolish : constants_.next_polish) * error, target);
+      last_polish_ = error;
+    } else if (is_stalled()) {
+      if (polish_best(state)) return true;
+      last_polish_ = best_error_;
     }
     ++state.summary->iterations;
     if (iterate_.factor(state, delta_)) {
@@ -191,7 +233,17 @@ bool InteriorPoint::run(SolveState& state) {
       break;
     }
   }
+  return end(state);
+}
+
+// The best iterate, or what an attempt under Coulomb's law came nearer with.
+bool InteriorPoint::end(SolveState& state) {
   iterate_.restore(state);
+  if (least_law_residual_ < state.residual()) {
+    state.impulse = law_impulse_;
+    state.update_velocity();
+    state.update_shift();
+  }
   return state.residual() <= state.step->exact_limit_m_per_s();
 }
 

@@ -101,6 +101,15 @@ TEST_P(ConeSolverTest, CoulombsLawIsExactOnCompliantPiles) {
   }
 }
 
+// Here the iteration stalls above the limit, and only the Newton method of the end comes through.
+TEST_P(ConeSolverTest, CoulombsLawIsExactWhereTheIterationStalls) {
+  for (const int seed : {17, 29}) {
+    const StepProblem problem = make_cone_pile(seed, 1e-5, ContactSet::coulomb);
+    const Answer answer = solve("interior-point:" + GetParam(), problem, single_part(problem.body_count()));
+    EXPECT_TRUE(is_exact(problem, answer.summary, answer.solution)) << "seed " << seed;
+  }
+}
+
 // Whatever becomes of it, status and judge agree.
 TEST_P(ConeSolverTest, CoulombsLawIsHonestOnStiffPiles) {
   for (const double cfm : {1e-8, 1e-11}) {
@@ -149,7 +158,7 @@ TEST_P(ConeSolverTest, SameBytesWithAnyNumberOfThreads) {
     const StepProblem problem = make_cone_pile(2, 1e-5, set);
     const std::vector<int> parts = sliced_parts(problem.body_count(), 4);
     const Answer one = solve("interior-point:" + GetParam(), problem, parts);
-    for (const int threads : {2, 7}) {
+    for (const int threads : {2, 3, 7}) {
       Solution more = cold_start(problem);
       make_step_solver("interior-point:" + GetParam(), {.threads = threads})->solve(problem, parts, more);
       EXPECT_TRUE(same_bytes(more.impulse, one.solution.impulse)) << threads << " threads";
@@ -214,20 +223,57 @@ TEST_P(ConeSolverTest, DirectionsSolveTheirOwnSystem) {
   EXPECT_LE(iterate.rounding(of.state), 1e-9);
 }
 
-// Near the answer a step squares the error: not so with any eigenvalue of the derivative wrong.
+// Near the answer a step squares the error, or under Coulomb's law leaves a hundredth: not so with any eigenvalue of the
+// derivative wrong, nor without the change of the shift, nor with another sign of it.
 TEST_P(ConeSolverTest, NewtonConvergesFromNearby) {
-  const StepProblem problem = make_cone_pile(4, 1e-3);
-  const Answer answer = solve("interior-point:" + GetParam(), problem, single_part(problem.body_count()));
-  StateOf of(problem, GetParam());
-  SeededRandom random(9);
-  for (int r = 0; r < problem.row_count(); ++r)
-    of.state.impulse[r] = answer.solution.impulse[r] * (1 + random.uniform(-1e-6, 1e-6));
-  of.state.update_velocity();
-  ASSERT_GT(of.state.residual(), 1e-8);
-  ConeNewton newton;
-  EXPECT_LE(newton.run(of.state, 1e-13), 1e-12);
-  EXPECT_LE(of.summary.refinements, 4);
-  EXPECT_LE(of.state.residual(), 1e-12);
+  for (const ContactSet set : {ContactSet::cone, ContactSet::coulomb}) {
+    const StepProblem problem = make_cone_pile(4, 1e-3, set);
+    const Answer answer = solve("interior-point:" + GetParam(), problem, single_part(problem.body_count()));
+    StateOf of(problem, GetParam());
+    SeededRandom random(9);
+    for (int r = 0; r < problem.row_count(); ++r)
+      of.state.impulse[r] = answer.solution.impulse[r] * (1 + random.uniform(-1e-6, 1e-6));
+    of.state.update_velocity();
+    ASSERT_GT(of.state.residual(), 1e-8);
+    ConeNewton newton;
+    EXPECT_LE(newton.run(of.state, 1e-13), 1e-12);
+    EXPECT_LE(of.summary.factorizations, 4);
+    if (set == ContactSet::cone) {
+      EXPECT_LE(of.summary.refinements, 4);
+    }
+    EXPECT_LE(of.state.residual(), 1e-12);
+  }
+}
+
+// Impulses that are a tenth off: some full steps overshoot and are halved.
+TEST_P(ConeSolverTest, NewtonOfCoulombsLawComesFromFurtherAway) {
+  for (int seed = 0; seed < 5; ++seed) {
+    const StepProblem problem = make_cone_pile(seed, 1e-3, ContactSet::coulomb);
+    const Answer answer = solve("interior-point:" + GetParam(), problem, single_part(problem.body_count()));
+    StateOf of(problem, GetParam());
+    SeededRandom random(seed);
+    for (int r = 0; r < problem.row_count(); ++r)
+      of.state.impulse[r] = answer.solution.impulse[r] * (1 + random.uniform(-0.1, 0.1));
+    of.state.update_velocity();
+    ASSERT_GT(of.state.residual(), 1e-4);
+    ConeNewton newton;
+    EXPECT_LE(newton.run(of.state, 1e-12), 1e-11) << "seed " << seed;
+    EXPECT_LE(of.summary.factorizations, 20);
+  }
+}
+
+// What it cannot solve it leaves no worse, and says how good it is.
+TEST_P(ConeSolverTest, NewtonOfCoulombsLawIsHonestOnStiffPiles) {
+  for (int seed = 0; seed < 3; ++seed) {
+    const StepProblem problem = make_cone_pile(seed, 1e-11, ContactSet::coulomb);
+    StateOf of(problem, GetParam());
+    const double before = of.state.residual();
+    ConeNewton newton;
+    const double after = newton.run(of.state, 1e-13);
+    EXPECT_LE(after, before) << "seed " << seed;
+    EXPECT_EQ(after, of.state.residual_of_cones());
+    EXPECT_NEAR(after, of.state.residual(), 1e-9 * after + 1e-14);
+  }
 }
 
 std::vector<std::string> kernel_names() {

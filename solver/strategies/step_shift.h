@@ -1,0 +1,39 @@
+// The change of Coulomb's shift that belongs to a step of the semi-smooth Newton method (cone_newton.h).
+//
+// The shift s = mu |w_t| changes along a step by
+//
+//     ds = mu u . dw_t,   u = w_t / |w_t|,
+//
+// with the dw_t of the same step, which is what makes the derivative unsymmetric. For a given ds the step is that of a cone, one
+// back-substitution with the factor at hand, and dw_t is affine in ds. So one unknown a contact remains, ds = r + A ds with A
+// known by back-substitutions alone; coulomb_shift.h's acceleration is GMRES there.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "solver/solve_state.h"
+#include "solver/strategies/coulomb_shift.h"
+
+namespace cleave {
+
+class StepShift {
+ public:
+  // Of the step from these slacks (m), m/s; the change is zero.
+  void begin(const SolveState& state, std::span<const double> slack_before);
+
+  // Of the next back-substitution: state.f_r <- f_r - ds on the normals.
+  void add_to_right_hand_side(SolveState& state) const;
+
+  // After the back-substitution, with state.slack where the factored step began: whether the change that it leads to is near
+  // enough to the one that it was for. Makes the next change.
+  bool is_matched(SolveState& state);
+
+ private:
+  CoulombShift shift_;
+  double first_apart_ = -1;                          // m/s; negative before the first back-substitution
+  std::vector<double> slack_before_, row_velocity_;  // (m)
+  std::vector<double> wanted_;                       // (cones)
+};
+
+}  // namespace cleave
