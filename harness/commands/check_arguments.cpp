@@ -67,6 +67,9 @@ void check_out_file(const std::string& out, bool force) {
   std::error_code ignored;  // a name that cannot be looked at cannot be written either, and that says why
   if (std::filesystem::exists(out, ignored) && !force)
     reject("--out: " + out + " exists; name another file or give --force");
+  const std::filesystem::path directory = std::filesystem::path(out).parent_path();
+  if (!directory.empty() && !std::filesystem::is_directory(directory, ignored))
+    reject("--out: " + out + " cannot be written: there is no directory " + directory.string());
 }
 
 void reject_extras(const CLI::App& app) {

@@ -12,7 +12,8 @@ namespace cleave {
 // and an empty argument where no option takes it. What the command does not know is left to the parser.
 void check_arguments(const CLI::App& command, std::span<const std::string> arguments);
 
-// --out of a command that writes one file: throws where it is empty, and where a file of that name exists and --force is not given.
+// --out of a command that writes one file: throws where it is empty, where there is no such directory, and
+// where a file of that name exists and --force is not given.
 void check_out_file(const std::string& out, bool force);
 
 // After parsing: throws for what `app` could not place, naming the nearest option.

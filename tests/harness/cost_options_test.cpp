@@ -84,6 +84,12 @@ TEST(CostOptions, CalibrateWritesWhatRunsRead) {
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_NE(alone.err.find("none to hold out; name more FILES"), std::string::npos) << alone.err;
   EXPECT_FALSE(std::filesystem::exists(out));
+  // Before anything is timed.
+  const ProgramResult nowhere = run_cleave({"calibrate", one, two, "--out", directory / "none/own.toml"});
+  EXPECT_EQ(nowhere.exit_code, 1);
+  EXPECT_NE(nowhere.err.find("none/own.toml cannot be written: there is no directory"), std::string::npos)
+      << nowhere.err;
+  EXPECT_EQ(nowhere.err.find("timing on"), std::string::npos) << nowhere.err;
   const Arguments calibrate = {"calibrate", one, two, "--out", out, "--repeats", "1"};
   const ProgramResult made = run_cleave(calibrate);
   ASSERT_EQ(made.exit_code, 0) << made.err;
