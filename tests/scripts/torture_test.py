@@ -258,6 +258,7 @@ class EndingsTest(unittest.TestCase):
     def test_what_is_promised_is_no_fault(self):
         for case in ((0, "told\nand told"), (1, "cleave: no"), (3, "a\nb", "FAIL"),
                      (1, f"a.h5: problem of x step 1: 2 bodies, hash {'0' * 16}\ncleave verify: no", "ok"),
+                     (1, "Error in GnuTLS initialization: not found.\n\nlibgomp: Out of memory allocating 8 bytes"),
                      (1, "replay: step 4 of 6, 14 s, about 7 s to go\ncleave replay: disk/out: cannot be written")):
             self.assertIsNone(self.fault(*case), case)
 

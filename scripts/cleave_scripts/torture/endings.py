@@ -6,6 +6,9 @@ DONE, BAD_INPUT, ROWS_FAILED, CHECK_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 # What verify says of a good file, before a bad one, and what a command says that takes over the lock of a killed one.
 INFORMATION = re.compile(r": problem of .*, hash [0-9a-f]{16}$|: left by process \d+ .*; taken over$")
 PROGRESS = re.compile(r"^\w+: step \d+ of \d+, \d+ s, about \d+ s to go$")  # of what had taken long
+# What libraries say whose start, before the program's own, lacks memory: GnuTLS, which HDF5 brings in and which goes on without;
+# and OpenMP's begins its one line with an empty one.
+LIBRARY_START = re.compile(r"^Error in GnuTLS initialization: .*\n|^\n(?=libgomp: )", re.MULTILINE)
 ALARMS = ("Traceback (most recent call last)", "AddressSanitizer", "ThreadSanitizer", "runtime error:", "terminate called",
           "Assertion", "HDF5-DIAG", "free(): invalid", "malloc():", "double free")
 
@@ -25,8 +28,9 @@ def fault(ending, allowed):
 
 
 def _fault_of_refusal(ending):
-    """One line, of signs that can be printed. What was said of good files and of progress before stays said."""
-    lines = [line for line in ending.lines() if not INFORMATION.search(line) and not PROGRESS.search(line)]
+    """One line, of signs that can be printed. What was said of good files, of progress and by libraries before stays said."""
+    said = LIBRARY_START.sub("", ending.err).splitlines()
+    lines = [line for line in said if not INFORMATION.search(line) and not PROGRESS.search(line)]
     if len(lines) != 1:
         return "no error line" if not lines else "several error lines"
     return None if lines[0].isprintable() else "error line with control characters"
