@@ -16,6 +16,7 @@
 // The rows of a contact with a cone (StepProblem::contact_set) stand as they are; their set is cone.h's.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,6 +38,8 @@ class ImpulseSet {
 
   // Of every contact whose set is no box, ascending.
   std::span<const FrictionCone> cones() const { return cones_; }
+  // Whether one of them follows Coulomb's law.
+  bool has_coulomb() const { return std::ranges::any_of(cones_, &FrictionCone::coulomb); }
   // Whether a contact's weights are a block (row_weights.h).
   bool has_blocks() const { return !axes_.empty() || !cones_.empty(); }
 

@@ -52,6 +52,16 @@ void SolveState::update_shift() {
   }
 }
 
+void SolveState::update_velocity_and_shift() {
+  update_velocity();
+  update_shift();
+}
+
+void SolveState::load(const std::vector<double>& impulses) {
+  impulse = impulses;
+  update_velocity_and_shift();
+}
+
 void SolveState::analyze() {
   if (!analysis) return;
   const auto begin = StageClock::Clock::now();
@@ -136,7 +146,7 @@ double SolveState::residual_of_cones() {
 }
 
 double SolveState::residual() {
-  if (std::ranges::none_of(step->set().cones(), &FrictionCone::coulomb)) return residual_of_cones();
+  if (!step->set().has_coulomb()) return residual_of_cones();
   law_slack = slack;
   for (std::size_t k = 0; k < shift.size(); ++k) {
     const FrictionCone& cone = step->set().cones()[k];

@@ -53,6 +53,11 @@ struct SolveState {
   // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b (plus the shift) from the impulses.
   void update_velocity();
 
+  // The same with the shift of these velocities.
+  void update_velocity_and_shift();
+  // These impulses (m), with their velocities and shift.
+  void load(const std::vector<double>& impulses);
+
   // The kernel's factorisation for the weights; counted. False when it finds a non-positive pivot.
   bool factor();
 

@@ -48,11 +48,6 @@ Derivative differentiate(double mu, const Vector3d& p) {
   return derivative;
 }
 
-void settle_shift(SolveState& state) {
-  state.update_velocity();
-  state.update_shift();
-}
-
 }  // namespace
 
 // Weights of rows with bounds; theta = 0 sets the impulse to its bound. The rows of cones are linearize_cone's.
@@ -116,7 +111,7 @@ bool ConeNewton::find_step(SolveState& state) {
   return true;
 }
 
-// J, with the residual's rule of which rows are a contact's. Ranges are summed in their order.
+// The sum of d F^2, with the residual's rule of which rows are a contact's. Ranges are summed in their order.
 double ConeNewton::energy(SolveState& state) {
   const std::span<const double> d = state.step->diagonal();
   range_energy_.assign(state.range_count(), 0.0);
@@ -131,7 +126,7 @@ double ConeNewton::energy(SolveState& state) {
 
 // All of the step, or under Coulomb's law the first of its halves, quarters, ... that lowers the energy.
 void ConeNewton::take_step(SolveState& state) {
-  settle_shift(state);
+  state.update_velocity_and_shift();
   if (!has_coulomb_) return;
   const double before = energies_.back();
   double after = energy(state);
@@ -139,7 +134,7 @@ void ConeNewton::take_step(SolveState& state) {
     for (std::size_t r = 0; r < wanted_.size(); ++r) {
       state.impulse[r] = 0.5 * (state.impulse[r] + impulse_before_[r]);
     }
-    settle_shift(state);
+    state.update_velocity_and_shift();
     after = energy(state);
   }
   energies_.push_back(after);
@@ -161,7 +156,7 @@ double ConeNewton::first_residual(double least_compliance) {
 }
 
 double ConeNewton::run(SolveState& state, double target) {
-  has_coulomb_ = std::ranges::any_of(state.step->set().cones(), &FrictionCone::coulomb);
+  has_coulomb_ = state.step->set().has_coulomb();
   state.update_shift();
   double least = state.residual_of_cones();
   best_impulse_ = state.impulse;
@@ -174,8 +169,7 @@ double ConeNewton::run(SolveState& state, double target) {
     if (residual < least) least = residual, best_impulse_ = state.impulse;
     if (!falls(before, residual)) break;
   }
-  state.impulse = best_impulse_;
-  settle_shift(state);
+  state.load(best_impulse_);
   return least;
 }
 

@@ -50,7 +50,7 @@ class ConeNewton {
 
   bool has_coulomb_ = false;
   StepShift shift_;
-  std::vector<double> energies_;      // J, before every step and after the last; of Coulomb's law
+  std::vector<double> energies_;      // before every step and after the last; of Coulomb's law
   std::vector<double> range_energy_;  // scratch
   std::vector<double> wanted_;        // (m) on the rows of cones, w - d F / theta
   std::vector<double> impulse_before_, best_impulse_;  // (m)

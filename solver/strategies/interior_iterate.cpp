@@ -145,8 +145,7 @@ void InteriorIterate::correct_centrality(SolveState& state) {
 void InteriorIterate::advance(SolveState& state, double step) {
   barrier_.advance(state, step);
   cones_.advance(state, step);
-  state.update_velocity();
-  state.update_shift();
+  state.update_velocity_and_shift();
 }
 
 double InteriorIterate::error(SolveState& state) {
@@ -164,11 +163,9 @@ void InteriorIterate::keep(const SolveState& state) {
 }
 
 void InteriorIterate::restore(SolveState& state) {
-  state.impulse = kept_impulse_;
   barrier_.restore();
   cones_.restore();
-  state.update_velocity();
-  state.update_shift();
+  load_kept_impulses(state);
 }
 
 }  // namespace cleave

@@ -68,11 +68,7 @@ class InteriorIterate {
   void keep(const SolveState& state);
   void restore(SolveState& state);
   // Its impulses alone, with their velocities.
-  void load_kept_impulses(SolveState& state) const {
-    state.impulse = kept_impulse_;
-    state.update_velocity();
-    state.update_shift();
-  }
+  void load_kept_impulses(SolveState& state) const { state.load(kept_impulse_); }
 
  private:
   void choose_impulses(SolveState& state);

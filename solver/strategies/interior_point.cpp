@@ -48,6 +48,7 @@ class InteriorPoint : public Strategy {
   Progress watch(const SolveState& state, double error);
   bool polish(SolveState& state);
   bool polish_cones(SolveState& state, double tolerance);
+  bool polish_rows(SolveState& state, double tolerance);
   bool polish_best(SolveState& state);
   bool is_stalled() const;
   bool end(SolveState& state);
@@ -109,7 +110,7 @@ void InteriorPoint::step(SolveState& state, double error) {
   iterate_.advance(state, last_step_);
 }
 
-// The semi-smooth Newton method from the interior iterate, which is restored on failure.
+// The semi-smooth Newton method. Under Coulomb's law what it came nearest with is kept.
 bool InteriorPoint::polish_cones(SolveState& state, double tolerance) {
   const double residual = newton_.run(state, tolerance);
   if (residual <= state.step->exact_limit_m_per_s()) return true;
@@ -117,25 +118,26 @@ bool InteriorPoint::polish_cones(SolveState& state, double tolerance) {
     least_law_residual_ = residual;
     law_impulse_ = state.impulse;
   }
-  state.impulse = kept_impulse_;
-  state.update_velocity();
-  state.update_shift();
   return false;
 }
 
 // Reads the active set off the slacks and multipliers and solves on it exactly, flipping what is still wrong
-// a few times. On failure the interior iterate is restored.
+// a few times.
+bool InteriorPoint::polish_rows(SolveState& state, double tolerance) {
+  const Settling settling{constants_.polish_rounds, constants_.polish_refinements,
+                          constants_.polish_violations, constants_.polish_violated_share};
+  iterate_.read_active_set(state);
+  return state.settle(tolerance, settling) && state.residual() <= state.step->exact_limit_m_per_s();
+}
+
+// The end from the present impulses, which are restored on failure.
 bool InteriorPoint::polish(SolveState& state) {
   const double tolerance =
       constants_.polish_accuracy * state.options.target_m_per_s * state.step->velocity_scale();
-  const Settling settling{constants_.polish_rounds, constants_.polish_refinements,
-                          constants_.polish_violations, constants_.polish_violated_share};
   kept_impulse_ = state.impulse;
-  if (!state.step->set().cones().empty()) return polish_cones(state, tolerance);
-  iterate_.read_active_set(state);
-  if (state.settle(tolerance, settling) && state.residual() <= state.step->exact_limit_m_per_s()) return true;
-  state.impulse = kept_impulse_;
-  state.update_velocity();
+  const bool has_cones = !state.step->set().cones().empty();
+  if (has_cones ? polish_cones(state, tolerance) : polish_rows(state, tolerance)) return true;
+  state.load(kept_impulse_);
   return false;
 }
 
@@ -144,9 +146,7 @@ bool InteriorPoint::polish_best(SolveState& state) {
   present_impulse_ = state.impulse;
   iterate_.load_kept_impulses(state);
   if (polish(state)) return true;
-  state.impulse = present_impulse_;
-  state.update_velocity();
-  state.update_shift();
+  state.load(present_impulse_);
   return false;
 }
 
@@ -181,7 +181,7 @@ double InteriorPoint::first_polish(double least_compliance) const {
 
 void InteriorPoint::begin(SolveState& state) {
   const double least = state.step->least_relative_compliance();
-  has_coulomb_ = std::ranges::any_of(state.step->set().cones(), &FrictionCone::coulomb);
+  has_coulomb_ = state.step->set().has_coulomb();
   const double first = has_coulomb_                        ? kFirstLawPolish
                        : state.step->set().cones().empty() ? first_polish(least)
                                                            : ConeNewton::first_residual(least);
@@ -239,11 +239,7 @@ bool InteriorPoint::run(SolveState& state) {
 // The best iterate, or what an attempt under Coulomb's law came nearer with.
 bool InteriorPoint::end(SolveState& state) {
   iterate_.restore(state);
-  if (least_law_residual_ < state.residual()) {
-    state.impulse = law_impulse_;
-    state.update_velocity();
-    state.update_shift();
-  }
+  if (least_law_residual_ < state.residual()) state.load(law_impulse_);
   return state.residual() <= state.step->exact_limit_m_per_s();
 }
 
