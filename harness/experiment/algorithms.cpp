@@ -36,11 +36,15 @@ std::vector<AlgorithmKind> make_kinds() {
       kind_of("kernel", "kernels", About::solver, true, kernel_table()),
       kind_of("friction", "frictions", About::problem, false, friction_models()),
   };
+  const auto first_of = [&kinds](std::string_view option) -> AlgorithmKind& {
+    return *std::ranges::find(kinds, option, &AlgorithmKind::option);
+  };
   // --solver takes pairs too, and --advance whatever --solver takes.
-  kinds[3].names = all_solver_names();
-  std::ranges::copy(chosen_kernel_solvers(), std::back_inserter(kinds[3].names));
-  kinds[6].entries.push_back(chosen_kernel());
-  kinds[6].names.push_back(chosen_kernel().name);
+  std::vector<std::string>& solvers = first_of("solver").names;
+  solvers = all_solver_names();
+  std::ranges::copy(chosen_kernel_solvers(), std::back_inserter(solvers));
+  first_of("kernel").entries.push_back(chosen_kernel());
+  first_of("kernel").names.push_back(chosen_kernel().name);
   return kinds;
 }
 

@@ -24,12 +24,11 @@ CostFeatures features_of(const CostSample& sample, double active_share) {
 
 // Where samples do not tell the terms apart, the least of all coefficients that fit them.
 ExpectedFactorizations fit_factorizations(std::span<const CostSample> samples,
-                                          std::span<const CostFeatures> features) {
+                                          std::span<const std::array<double, 3>> terms_of_sample) {
   Eigen::MatrixXd terms(samples.size(), 3);
   Eigen::VectorXd logarithm(samples.size());
   for (std::size_t k = 0; k < samples.size(); ++k) {
-    const auto of_sample = ExpectedFactorizations::terms(features[k]);
-    terms.row(k) = Eigen::Map<const Eigen::RowVector3d>(of_sample.data());
+    terms.row(k) = Eigen::Map<const Eigen::RowVector3d>(terms_of_sample[k].data());
     logarithm[k] = std::log(samples[k].factorizations);
   }
   const Eigen::Vector3d fitted = terms.completeOrthogonalDecomposition().solve(logarithm);
@@ -66,15 +65,15 @@ double interface_size(double flops) {
 KernelCost fit_cost(std::span<const CostSample> samples) {
   KernelCost cost{samples.front().kernel, samples.front().threads, {}, 1, {}};
   std::vector<double> shares;
-  std::vector<CostFeatures> counted;
+  std::vector<std::array<double, 3>> terms;  // of the factorisations
   std::vector<std::array<double, kCostTerms>> units;
   for (const CostSample& sample : samples) {
     const CostFeatures features = features_of(sample, sample.active_share);
     if (features.cut_rows > 0) shares.push_back(sample.active_share);
     units.push_back(unit_costs_ms(features, sample.threads, sample.factorizations));
-    counted.push_back(features);
+    terms.push_back(ExpectedFactorizations::terms(features));
   }
-  cost.factorizations = fit_factorizations(samples, counted);
+  cost.factorizations = fit_factorizations(samples, terms);
   if (!shares.empty()) cost.active_share = median(std::move(shares));
   for (int group = 0; group < kCostGroups; ++group) fit_group(samples, units, group, cost);
   return cost;

@@ -24,9 +24,10 @@ struct CostSample {
 // The number of rows of a dense interface whose factorisation takes so many flops, as cost_features.h counts them.
 double interface_size(double flops);
 
-// Samples of one kernel and number of threads, at least one. The share of active rows is their median,
-// the expected factorisations are fitted to theirs by least squares of the logarithm. Each group of terms is fitted to the times of its own stages, with what each sample really factored: nonnegative coefficients of least
-// squared error as a share of the whole solve.
+// Samples of one kernel and number of threads, at least one. The share of active rows is their median; the expected
+// factorisations are fitted to theirs by least squares of the logarithm. Each group of terms is fitted to the times of its
+// own stages, with what each sample really factored: nonnegative coefficients of least squared error as a share of the
+// whole solve.
 KernelCost fit_cost(std::span<const CostSample> samples);
 
 // Of one sample. counted: with its own number of factorisations and share of active rows; else with the expected ones,
