@@ -16,8 +16,6 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
-
 void expect_refused(const Arguments& arguments, const std::string& piece) {
   const TemporaryDirectory directory;
   SCOPED_TRACE(joined(arguments, " "));

@@ -16,8 +16,6 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
-
 // One line on stderr that holds all pieces, nothing on stdout, exit code 1, and an empty directory.
 void expect_refused(const Arguments& arguments, const Arguments& pieces, const fs::path& directory) {
   const ProgramResult result = run_cleave(arguments);

@@ -14,13 +14,6 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
-
-Arguments operator+(Arguments a, const Arguments& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 const Arguments kPile = {"run",     "--scene",         "rock_pile", "--bodies",      "40",        "--steps",
                          "60",      "--measure-every", "20",        "--partitioner", "bfs,mindp", "--refiner",
                          "none,fm", "--repeats",       "1",         "--max-bodies",  "8"};

@@ -23,13 +23,6 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
-
-Arguments operator+(Arguments a, const Arguments& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 const Arguments kPile = {"--scene", "rock_pile", "--bodies", "40"};
 
 std::vector<std::string> kernels() { return {cost_kernel_names().begin(), cost_kernel_names().end()}; }

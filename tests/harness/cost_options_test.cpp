@@ -13,13 +13,6 @@
 namespace cleave {
 namespace {
 
-using Arguments = std::vector<std::string>;
-
-Arguments operator+(Arguments a, const Arguments& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 const Arguments kPile = {"run",     "--scene", "rock_pile",       "--bodies", "40",       "--repeats", "1",
                          "--steps", "60",      "--measure-every", "20",       "--solver", "schur"};
 

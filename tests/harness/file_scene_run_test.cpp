@@ -11,8 +11,6 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
-
 CsvTable rows_of(const Arguments& scene, const std::string& steps) {
   const TemporaryDirectory directory;
   Arguments arguments = {"run",      "--partitioner", "mindp",          "--refiner", "fm",

@@ -16,8 +16,6 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
-
 constexpr const char* kName = "log_tower_step000004.h5";
 
 class FrictionReplay : public ::testing::Test {

@@ -21,8 +21,6 @@
 namespace cleave {
 namespace {
 
-using Arguments = std::vector<std::string>;
-
 const Arguments kColumns = {"step",
                             "partitioner",
                             "refiner",

@@ -10,19 +10,12 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
-
 const Arguments kCrane = {"--scene", "crane", "--links", "20", "--dt", "0.001", "--cfm", "1e-10"};
 const Arguments kPile = {"--scene", "rock_pile", "--bodies", "12"};
 const Arguments kSplit = {"--partitioner", "semantic,semantic@split=chunks,mindp",
                           "--refiner",     "none,fm",
                           "--max-bodies",  "6",
                           "--repeats",     "1"};
-
-Arguments operator+(Arguments a, const Arguments& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 class Groups : public testing::Test {
  protected:

@@ -26,7 +26,6 @@
 namespace cleave {
 namespace {
 
-using Arguments = std::vector<std::string>;
 using Pair = std::pair<int, int>;
 
 constexpr int kSteps = 37;  // no multiple of what is written at once

@@ -341,8 +341,6 @@ TEST(OdeBaselines, NoRowsIsFreeFall) {
         << name;
 }
 
-using Arguments = std::vector<std::string>;
-
 TEST(OdeBaselines, AreOrdinarySolversOfARun) {
   const TemporaryDirectory directory;
   const std::string solvers = "exact,ode-step,ode-quickstep";

@@ -18,8 +18,6 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
-
 // A graph file as METIS's manual describes it, of format 001, in METIS's own arrays.
 struct MetisGraph {
   std::vector<idx_t> first{0}, neighbour, weight;

@@ -12,17 +12,10 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
-
 const Arguments kSplit = {"--partitioner", "geometric,random,karger,single",
                           "--refiner",     "none,fm",
                           "--max-bodies",  "6",
                           "--repeats",     "1"};
-
-Arguments operator+(Arguments a, const Arguments& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 class Positions : public testing::Test {
  protected:

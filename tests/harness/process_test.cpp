@@ -21,8 +21,6 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
-
 // In bash, with $cleave the program and $d a fresh directory.
 struct Shell {
   TemporaryDirectory directory;
@@ -216,7 +214,8 @@ TEST(LittleMemory, EndsNoWriterInACrash) {
         shell.run("ulimit -v " + std::to_string(kbytes) +
                   "; exec $cleave replay $d/in/*.h5 --solver schur,pgs --threads 2 --write-solutions "
                   "--out $d/out --force");
-    EXPECT_TRUE(replayed.exit_code >= 0 && replayed.exit_code <= 2) << kbytes << " kB: " << replayed.exit_code;
+    EXPECT_TRUE(replayed.exit_code >= 0 && replayed.exit_code <= 2)
+        << kbytes << " kB: " << replayed.exit_code;
     lines += replayed.exit_code == 1;
   }
   EXPECT_GT(lines, 0);

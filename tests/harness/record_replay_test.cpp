@@ -21,14 +21,7 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-using Arguments = std::vector<std::string>;
-
 const Arguments kPile = {"--scene", "rock_pile", "--bodies", "20"};
-
-Arguments operator+(Arguments a, const Arguments& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 // Runs the program and expects it to end well.
 void expect_well(const Arguments& arguments) {

@@ -18,8 +18,6 @@
 namespace cleave {
 namespace {
 
-using Arguments = std::vector<std::string>;
-
 constexpr double kAgreement_m_per_s = 1e-8;
 
 struct RecordedScene {

@@ -10,13 +10,6 @@
 namespace cleave {
 namespace {
 
-using Arguments = std::vector<std::string>;
-
-Arguments operator+(Arguments a, const Arguments& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
-
 const Arguments kPile = {"run",          "--scene",  "rock_pile",       "--bodies", "30",
                          "--max-bodies", "6",        "--partitioner",   "mix",      "--refiner",
                          "none,fm",      "--solver", "schur,monolithic"};

@@ -11,8 +11,6 @@
 namespace cleave {
 namespace {
 
-using Arguments = std::vector<std::string>;
-
 std::string key_of(Arguments arguments) {
   arguments.push_back("--print-key");
   const ProgramResult result = run_cleave(arguments);

@@ -9,6 +9,13 @@
 
 namespace cleave {
 
+// Of a command line.
+using Arguments = std::vector<std::string>;
+inline Arguments operator+(Arguments a, const Arguments& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
 // A fresh directory that is removed with everything in it.
 class TemporaryDirectory {
  public:

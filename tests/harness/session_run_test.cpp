@@ -9,16 +9,9 @@
 namespace cleave {
 namespace {
 
-using Arguments = std::vector<std::string>;
-
 const Arguments kSolvers = {
     "--partitioner", "mix", "--refiner", "fm", "--solver", "schur,pivot:schur-bodies,exact"};
 const Arguments kPile = {"--scene", "rock_pile", "--bodies", "20"};
-
-Arguments operator+(Arguments a, const Arguments& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 CsvTable rows_of(const Arguments& arguments, const std::filesystem::path& out) {
   const ProgramResult result = run_cleave(arguments + kSolvers + Arguments{"--out", out});

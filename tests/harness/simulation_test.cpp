@@ -21,14 +21,7 @@
 namespace cleave {
 namespace {
 
-using Arguments = std::vector<std::string>;
-
 const Arguments kTinyPile = {"--scene", "rock_pile", "--bodies", "12"};
-
-Arguments operator+(Arguments a, const Arguments& b) {
-  a.insert(a.end(), b.begin(), b.end());
-  return a;
-}
 
 double number(const std::string& text) { return std::strtod(text.c_str(), nullptr); }
 

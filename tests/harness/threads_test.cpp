@@ -13,8 +13,6 @@
 namespace cleave {
 namespace {
 
-using Arguments = std::vector<std::string>;
-
 // All strategies on the kernels that split, and one solver that does not.
 std::string splitting_solvers() {
   Arguments names = {"exact"};

@@ -19,21 +19,6 @@
 namespace cleave::partition_test {
 namespace {
 
-int bodies_in(const Partition& partition, int part) {
-  return static_cast<int>(std::ranges::count(partition.part_of_body, part));
-}
-
-// Rows between a body and a part, itself left out.
-long rows_into(const Bodies& bodies, const Partition& partition, int body, int part) {
-  long rows = 0;
-  for (const ConstraintLink& link : bodies.links) {
-    if (link.body_a < 0 || link.body_b < 0 || link.body_a == link.body_b) continue;
-    if (link.body_a == body && partition.part_of_body[link.body_b] == part) rows += link.rows;
-    if (link.body_b == body && partition.part_of_body[link.body_a] == part) rows += link.rows;
-  }
-  return rows;
-}
-
 Partition slow_take_over(const Bodies& bodies, const std::vector<int>& given, int most) {
   Partition parts;
   const std::set<int> used(given.begin(), given.end());

@@ -8,10 +8,6 @@
 namespace cleave::partition_test {
 namespace {
 
-int bodies_in(const Partition& partition, int part) {
-  return static_cast<int>(std::ranges::count(partition.part_of_body, part));
-}
-
 long rows_between(const Bodies& bodies, const Partition& partition, int part, int other) {
   long rows = 0;
   for (const ConstraintLink& link : bodies.links) {

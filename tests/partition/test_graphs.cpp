@@ -185,6 +185,20 @@ Bodies pile(Random& random, int width, int depth, int height) {
   return bodies;
 }
 
+int bodies_in(const Partition& partition, int part) {
+  return static_cast<int>(std::ranges::count(partition.part_of_body, part));
+}
+
+long rows_into(const Bodies& bodies, const Partition& partition, int body, int part) {
+  long rows = 0;
+  for (const ConstraintLink& link : bodies.links) {
+    if (link.body_a < 0 || link.body_b < 0 || link.body_a == link.body_b) continue;
+    if (link.body_a == body && partition.part_of_body[link.body_b] == part) rows += link.rows;
+    if (link.body_b == body && partition.part_of_body[link.body_a] == part) rows += link.rows;
+  }
+  return rows;
+}
+
 Bodies random_bodies(std::uint64_t seed) {
   constexpr int kFamilies = 10;
   Random random(seed);

@@ -49,6 +49,10 @@ struct Bodies {
   BodyGraph graph() const;
 };
 
+// Counted the slow and obvious way, for slow twins: bodies in a part, and rows between a body and a part, itself left out.
+int bodies_in(const Partition& partition, int part);
+long rows_into(const Bodies& bodies, const Partition& partition, int body, int part);
+
 // Families, by seed: empty, single and few bodies, path, star, tree, complete, pile, sparse and dense random,
 // disconnected, mostly isolated. Repeated links, links with static geometry and of a body with itself are
 // mixed in. Bodies stand anywhere, or on a grid that several may share a place of.

@@ -7,21 +7,14 @@ import unittest
 import h5py
 import numpy
 import stored_data
-from stand_in import StandInCase
-from synthetic import ROOT
+from stand_in import NOTES_ITS_CALL, StandInCase
 
 from cleave_scripts.documents import friction
 from cleave_scripts.documents.stored import Stored
 from cleave_scripts.measurements.friction_of_models import IN_A_STEP, MODELS, MOTION_COLUMNS, VELOCITY_COLUMNS, places, run_out_m
 from cleave_scripts.results.paper import SCENES
 
-STAND_IN = f"""#!/usr/bin/python3
-import os, pathlib, sys
-sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
-import friction_models_test
-words = sys.argv[1:]
-with open(os.environ["STAND_IN_LOG"], "a") as log:
-    log.write(" ".join(words) + "\\n")
+STAND_IN = NOTES_ITS_CALL + """import friction_models_test
 sys.exit(friction_models_test.answer(words))
 """
 SPEED = {"box": 1.0, "cone": 3.0, "coulomb": 2.0}  # of the first of two bodies, by model

@@ -6,7 +6,7 @@ import types
 import unittest
 
 import pandas
-from stand_in import StandInCase
+from stand_in import NOTES_ITS_CALL, StandInCase
 from synthetic import ROOT, good_row, write_manifest, write_steps
 
 from cleave_scripts.figures import hidden_claims
@@ -111,14 +111,7 @@ class HiddenChoicesTest(unittest.TestCase):
             hidden_choices.rows_of(experiments(cells))
 
 
-STAND_IN = f"""#!/usr/bin/python3
-import os, pathlib, sys
-sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
-import hidden_choices_test
-words = sys.argv[1:]
-given = dict(zip(words, words[1:]))
-with open(os.environ["STAND_IN_LOG"], "a") as log:
-    log.write(" ".join(words) + "\\n")
+STAND_IN = NOTES_ITS_CALL + """import hidden_choices_test
 hidden_choices_test.write_campaign(pathlib.Path(given["--out"]))
 """
 

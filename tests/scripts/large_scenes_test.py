@@ -8,7 +8,7 @@ import unittest.mock
 
 import numpy
 import stored_data
-from stand_in import StandInCase
+from stand_in import NOTES_ITS_CALL, StandInCase
 from synthetic import PROGRAM, ROOT
 
 from cleave_scripts.documents import large
@@ -86,15 +86,8 @@ class TablesTest(unittest.TestCase):
         self.assertEqual(ratios, ["1.00", "1.50"])
 
 
-STAND_IN = f"""#!/usr/bin/python3
-import os, pathlib, sys
-sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
-import h5py, numpy
+STAND_IN = NOTES_ITS_CALL + f"""import h5py, numpy
 from synthetic import write_steps
-words = sys.argv[1:]
-given = dict(zip(words, words[1:]))
-with open(os.environ["STAND_IN_LOG"], "a") as log:
-    log.write(" ".join(words) + "\\n")
 out = pathlib.Path(given["--out"])
 if words[0] == "record":
     out.mkdir(parents=True)

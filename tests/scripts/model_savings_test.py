@@ -2,19 +2,11 @@
 import csv
 import unittest
 
-from stand_in import StandInCase
-from synthetic import ROOT
+from stand_in import NOTES_ITS_CALL, StandInCase
 
 from cleave_scripts.measurements.model_savings import CASES, savings
 
-STAND_IN = f"""#!/usr/bin/python3
-import os, pathlib, sys
-sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
-from synthetic import write_steps
-words = sys.argv[1:]
-given = dict(zip(words, words[1:]))
-with open(os.environ["STAND_IN_LOG"], "a") as log:
-    log.write(" ".join(words) + "\\n")
+STAND_IN = NOTES_ITS_CALL + """from synthetic import write_steps
 write_steps(pathlib.Path(given["--out"]), [
     dict(seed=1, scene=given["--scene"], bodies=9, mu=given.get("--mu", 0.5), step=step, rows=60 * step, model=given["--model"], model_rows_left_out=6,
          model_rows_at_rest=3, model_rows_returned=0, model_passes=1, velocity_spread_m_per_s=1e-12, t_s_ms=4, status="ok")

@@ -5,8 +5,7 @@ import tempfile
 import unittest
 
 import stored_data
-from stand_in import StandInCase
-from synthetic import ROOT
+from stand_in import NOTES_ITS_CALL, StandInCase
 
 from cleave_scripts.documents import large
 from cleave_scripts.documents.stored import Stored
@@ -14,14 +13,7 @@ from cleave_scripts.measurements.running_simulation import COLUMNS, SWEEPS, WAYS
 from cleave_scripts.results.steps import Row
 
 # The sweeps are never within the limit, and step 7 of a session is not either.
-STAND_IN = f"""#!/usr/bin/python3
-import os, pathlib, sys
-sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
-from synthetic import write_steps
-words = sys.argv[1:]
-given = dict(zip(words, words[1:]))
-with open(os.environ["STAND_IN_LOG"], "a") as log:
-    log.write(" ".join(words) + "\\n")
+STAND_IN = NOTES_ITS_CALL + f"""from synthetic import write_steps
 session = int("--session" in words)
 write_steps(pathlib.Path(given["--out"]), [
     dict(seed=1, scene=given["--scene"], bodies=9, step=step, session=session, rows=1000 * min(step, 1), solver=solver, t_s_ms=t_s_ms,

@@ -4,7 +4,17 @@ import pathlib
 import tempfile
 import unittest
 
-from synthetic import PROGRAM, run_script
+from synthetic import PROGRAM, ROOT, run_script
+
+# What a stand-in begins with: its words, the options given among them, and the note of its call.
+NOTES_ITS_CALL = f"""#!/usr/bin/python3
+import os, pathlib, sys
+sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+words = sys.argv[1:]
+given = dict(zip(words, words[1:]))
+with open(os.environ["STAND_IN_LOG"], "a") as log:
+    log.write(" ".join(words) + "\\n")
+"""
 
 
 class StandInCase(unittest.TestCase):

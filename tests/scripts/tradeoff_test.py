@@ -5,22 +5,14 @@ import os
 import pathlib
 import unittest
 
-from stand_in import StandInCase
-from synthetic import ROOT
+from stand_in import NOTES_ITS_CALL, StandInCase
 
 from cleave_scripts.figures import style, time_to_accuracy
 from cleave_scripts.measurements import partitions_of_solvers
 from cleave_scripts.measurements.accuracy import LIMITS, failures, method_of, problems, profile, sweep_costs
 from cleave_scripts.measurements.motion_of_solvers import MOVERS, SCENES
 
-STAND_IN = f"""#!/usr/bin/python3
-import os, pathlib, sys
-sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
-from synthetic import write_manifest, write_steps
-words = sys.argv[1:]
-given = dict(zip(words, words[1:]))
-with open(os.environ["STAND_IN_LOG"], "a") as log:
-    log.write(" ".join(words) + "\\n")
+STAND_IN = NOTES_ITS_CALL + f"""from synthetic import write_manifest, write_steps
 out = pathlib.Path(given["--out"])
 out.mkdir(parents=True, exist_ok=True)
 same = dict(seed=1, bodies=given.get("--bodies", 200), rows=900, iterations=7, largest_free_velocity_m_per_s=2, t_pr_ms=0.5, interface_rows=9, residual_m_per_s=1e-12,
