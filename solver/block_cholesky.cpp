@@ -8,11 +8,11 @@
 namespace cleave {
 namespace {
 
-// y = W x or W^T x for a 6x6 lower triangular W (column-major), in place.
+// y = W x or W^T x for a 6x6 lower triangular W (column-major, zeros above), in place. Whole columns are vectors.
 void multiply_lower(const double* w, int ld, double* x) {
   double y[6] = {};
   for (int c = 0; c < 6; ++c) {
-    for (int r = c; r < 6; ++r) y[r] += w[r + c * ld] * x[c];
+    for (int r = 0; r < 6; ++r) y[r] += w[r + c * ld] * x[c];
   }
   std::copy(y, y + 6, x);
 }

@@ -39,11 +39,14 @@ inline void load_pair(const double* a, const double* b, double* both) {
   }
 }
 
-// Summed in four lanes, which compilers turn into vector instructions.
+// Summed in four lanes, as a vector: the compiler makes scalar instructions of the same loops.
 inline double row_times(const double* row, const double* both) {
-  double sum[4] = {};
+  using FourLanes [[gnu::vector_size(4 * sizeof(double))]] = double;
+  FourLanes sum = {};
   for (int c = 0; c < 12; c += 4) {
-    for (int k = 0; k < 4; ++k) sum[k] += row[c + k] * both[c + k];
+    const FourLanes a = {row[c], row[c + 1], row[c + 2], row[c + 3]};
+    const FourLanes b = {both[c], both[c + 1], both[c + 2], both[c + 3]};
+    sum += a * b;
   }
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }

@@ -32,7 +32,7 @@ inline bool weighted_gram(int rows, const double* jacobian, const double* d, dou
 // 6x6 diagonal block in the block's place; rows and columns in blocks. False when a pivot is not positive.
 bool eliminate_columns(int rows, int columns, double* a, int lda);
 
-// y (rows) -= A (rows, columns) x, and x (columns) -= A^T y; an even number of columns.
+// y (rows) -= A (rows, columns) x, and x (columns) -= A^T y; whole blocks of columns.
 void subtract_matrix_vector(int rows, int columns, const double* a, int lda, const double* x, double* y);
 void subtract_transpose_vector(int rows, int columns, const double* a, int lda, const double* y, double* x);
 
