@@ -210,6 +210,7 @@ void ConeBarrier::predict_shift(SolveState& state, std::span<double> shift) cons
 }
 
 void ConeBarrier::correct(SolveState& state, double trial, double low, double high) {
+  before_ = now_;
   run_over_cones(state, [&](const FrictionCone&, int k, int) {
     const Vector3d& l = point_[k].l;
     Direction& now = now_[k];

@@ -54,7 +54,6 @@ class ConeBarrier {
   // (cones) mu |w_t| after a full step along the direction, m/s; 0 where the law is not Coulomb's.
   void predict_shift(SolveState& state, std::span<double> shift) const;
   void correct(SolveState& state, double trial, double low, double high);
-  void keep_direction() { before_ = now_; }
   void restore_direction() { now_ = before_; }
   // The largest entry of f_r - J dv - D^-1 dlambda on the rows of cones; row_velocity (m): J dv.
   double rounding(SolveState& state, std::span<const double> row_velocity);

@@ -62,7 +62,8 @@ void InteriorIterate::set_products(SolveState& state, Aim aim) {
   if (aim == Aim::affine) target_ = 0;
   if (aim == Aim::centre) target_ = constants_.centring * now;
   if (aim == Aim::mehrotra) {
-    const double ratio = mean_product(course_.largest_step) / now;
+    const double ratio =
+        now > 0 ? mean_product(course_.largest_step) / now : 0;  // without bounds there are no products
     double share = 1;
     for (int power = 0; power < constants_.target_power; ++power) share *= ratio;
     target_ = share * now;
@@ -126,15 +127,14 @@ void InteriorIterate::correct_centrality(SolveState& state) {
   const double low = constants_.band * target_, high = target_ / constants_.band;
   for (int k = 0; k < constants_.corrections && course_.largest_step < constants_.long_step; ++k) {
     const double step = course_.largest_step, trial = std::min(1.0, step + constants_.reach);
-    kept_dlambda_ = state.dlambda;
+    kept_dlambda_.resize(state.dlambda.size());
+    kept_dlambda_.swap(state.dlambda);
     kept_course_ = course_;
-    barrier_.keep_direction();
-    cones_.keep_direction();
     barrier_.correct(state, trial, low, high);
     cones_.correct(state, trial, low, high);
     solve(state);
     if (course_.largest_step >= step + constants_.least_gain * (trial - step)) continue;
-    state.dlambda = kept_dlambda_;
+    state.dlambda.swap(kept_dlambda_);
     course_ = kept_course_;
     barrier_.restore_direction();
     cones_.restore_direction();
@@ -152,8 +152,7 @@ double InteriorIterate::error(SolveState& state) {
   if (cones_.product_count() > 0) return state.residual_of_cones();
   row_error_.resize(state.slack.size());
   const double worst = barrier_.error(state, row_error_);
-  return std::max(worst, state.greatest_over_rows(
-                             [&](int r) { return barrier_.is_fixed(r) ? 0.0 : std::abs(row_error_[r]); }));
+  return std::max(worst, state.greatest_over_rows([&](int r) { return std::abs(row_error_[r]); }));
 }
 
 void InteriorIterate::keep(const SolveState& state) {

@@ -4,11 +4,16 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace cleave {
 namespace {
 
 constexpr int kLanes = 4;  // running values side by side, for vector instructions
+
+// By value: std::max and std::min choose between addresses, which keeps loops from becoming vector instructions.
+double greater(double a, double b) { return a < b ? b : a; }
+double lesser(double a, double b) { return b < a ? b : a; }
 
 }  // namespace
 
@@ -22,7 +27,21 @@ BarrierCourse join_courses(std::span<const BarrierCourse> ranges) {
   return course;
 }
 
-void IntervalBarrier::add_pairs(SolveState& state, int r, double speed) {
+void IntervalBarrier::Side::start(std::size_t rows) {
+  s.assign(rows, 1.0);
+  for (std::vector<double>* v : {&is_there, &bound, &z, &inverse_s, &inverse_z, &gap, &now.ds, &now.dz,
+                                 &now.c, &before.ds, &before.dz, &before.c})
+    v->assign(rows, 0.0);
+}
+
+void IntervalBarrier::Side::add(int r, double value, double impulse, double multiplier) {
+  is_there[r] = 1;
+  bound[r] = value;
+  s[r] = sign * (impulse - value);
+  z[r] = multiplier;
+}
+
+void IntervalBarrier::add_bounds(SolveState& state, int r, double speed) {
   const StepProblem& problem = state.step->problem();
   const double d = state.step->diagonal()[r], w = state.slack[r];
   const double lower = problem.lower[r], upper = problem.upper[r], width = upper - lower;
@@ -30,6 +49,7 @@ void IntervalBarrier::add_pairs(SolveState& state, int r, double speed) {
   if (d * width <= constants_.fixed_width_m_per_s ||
       (std::isfinite(width) && width <= constants_.fixed_roundings * rounding)) {
     use_[r] = RowUse::fixed;
+    moves_[r] = 0;
     state.impulse[r] = 0.5 * (lower + upper);
     return;
   }
@@ -37,130 +57,156 @@ void IntervalBarrier::add_pairs(SolveState& state, int r, double speed) {
   const double margin = std::min(speed / d, constants_.inside_share * width);
   if (std::isfinite(lower)) state.impulse[r] = std::max(state.impulse[r], lower + margin);
   if (std::isfinite(upper)) state.impulse[r] = std::min(state.impulse[r], upper - margin);
-  const auto add = [&](double sign, double bound) {
-    if (!std::isfinite(bound)) return;
-    pairs_.push_back({r, sign, bound});
-    s_.push_back(sign * (state.impulse[r] - bound));
-    z_.push_back(std::max(sign * w, 0.0) + speed);
-  };
-  add(1, lower);
-  add(-1, upper);
-}
-
-// task(first, last, range) with the pairs of a range.
-template <class Task>
-void IntervalBarrier::run_over_pairs(SolveState& state, const Task& task) const {
-  state.run_over_rows([&](int, int, int range) { task(pair_first_[range], pair_first_[range + 1], range); });
+  for (Side& side : sides_) {
+    const double bound = side.sign > 0 ? lower : upper;
+    if (!std::isfinite(bound)) continue;
+    side.add(r, bound, state.impulse[r], std::max(side.sign * w, 0.0) + speed);
+    ++bounds_;
+  }
 }
 
 void IntervalBarrier::start(SolveState& state, std::span<const double> speed) {
-  pairs_.clear(), s_.clear(), z_.clear();
-  pair_first_.clear();
+  bounds_ = 0;
+  for (Side& side : sides_) side.start(speed.size());
   use_.assign(speed.size(), RowUse::bounded);
+  moves_.assign(speed.size(), 1.0);
   for (const FrictionCone& cone : state.step->set().cones())
     std::fill_n(use_.begin() + cone.first_row, cone.row_count, RowUse::of_cone);
   for (std::size_t r = 0; r < speed.size(); ++r) {
-    if (r % state.rows_of_a_range() == 0) pair_first_.push_back(static_cast<int>(pairs_.size()));
-    if (!is_of_cone(r)) add_pairs(state, static_cast<int>(r), speed[r]);
+    if (!is_of_cone(r)) add_bounds(state, static_cast<int>(r), speed[r]);
   }
-  pair_first_.push_back(static_cast<int>(pairs_.size()));
-  for (std::vector<double>* v : {&now_.ds, &now_.dz, &now_.c, &inverse_s_, &inverse_z_, &gap_}) {
-    v->assign(pairs_.size(), 0.0);
+}
+
+void IntervalBarrier::Side::weigh(int first, int last, std::span<const double> impulse,
+                                  std::span<double> weight) {
+#pragma omp simd
+  for (int r = first; r < last; ++r) {
+    inverse_s[r] = 1 / s[r];
+    inverse_z[r] = 1 / (z[r] + (1 - is_there[r]));
+    gap[r] = is_there[r] * (sign * (impulse[r] - bound[r]) - s[r]);
+    weight[r] += z[r] * inverse_s[r];
   }
 }
 
 void IntervalBarrier::weigh(SolveState& state, std::span<double> weight) {
-  state.run_over_rows([&](int first, int last, int range) {
-    for (int k = pair_first_[range]; k < pair_first_[range + 1]; ++k) {
-      const auto [row, sign, bound] = pairs_[k];
-      inverse_s_[k] = 1 / s_[k];
-      inverse_z_[k] = 1 / z_[k];
-      gap_[k] = sign * (state.impulse[row] - bound) - s_[k];
-      weight[row] += z_[k] * inverse_s_[k];
-    }
-    for (int r = first; r < last; ++r) weight[r] = is_fixed(r) ? 0.0 : 1 / weight[r];
+  state.run_over_rows([&](int first, int last, int) {
+    for (Side& side : sides_) side.weigh(first, last, state.impulse, weight);
+#pragma omp simd
+    for (int r = first; r < last; ++r) weight[r] = moves_[r] / weight[r];
   });
+}
+
+void IntervalBarrier::Side::aim(int first, int last, double product, double share) {
+#pragma omp simd
+  for (int r = first; r < last; ++r)
+    now.c[r] = is_there[r] * product - s[r] * z[r] - share * now.ds[r] * now.dz[r];
 }
 
 void IntervalBarrier::aim(SolveState& state, double product, bool second_order) {
   const double share = second_order ? 1.0 : 0.0;
-  run_over_pairs(state, [&](int first, int last, int) {
-    for (int k = first; k < last; ++k) now_.c[k] = product - s_[k] * z_[k] - share * now_.ds[k] * now_.dz[k];
+  state.run_over_rows([&](int first, int last, int) {
+    for (Side& side : sides_) side.aim(first, last, product, share);
   });
+}
+
+void IntervalBarrier::Side::add_force(int first, int last, std::span<double> f_r) const {
+#pragma omp simd
+  for (int r = first; r < last; ++r) f_r[r] += sign * (z[r] + (now.c[r] - z[r] * gap[r]) * inverse_s[r]);
 }
 
 void IntervalBarrier::right_hand_side(SolveState& state) const {
-  state.run_over_rows([&](int first, int last, int range) {
-    for (int r = first; r < last; ++r) state.f_r[r] = is_fixed(r) ? 0.0 : -state.slack[r];
-    for (int k = pair_first_[range]; k < pair_first_[range + 1]; ++k) {
-      state.f_r[pairs_[k].row] += pairs_[k].sign * (z_[k] + (now_.c[k] - z_[k] * gap_[k]) * inverse_s_[k]);
-    }
+  state.run_over_rows([&](int first, int last, int) {
+#pragma omp simd
+    for (int r = first; r < last; ++r) state.f_r[r] = -moves_[r] * state.slack[r];
+    for (const Side& side : sides_) side.add_force(first, last, state.f_r);
   });
 }
 
-void IntervalBarrier::follow_range(int first, int last, std::span<const double> dlambda,
+void IntervalBarrier::Side::follow(int first, int last, std::span<const double> dlambda,
                                    BarrierCourse& course) {
-  for (int k = first; k < last; ++k) now_.ds[k] = pairs_[k].sign * dlambda[pairs_[k].row] + gap_[k];
-  for (int k = first; k < last; ++k) now_.dz[k] = (now_.c[k] - z_[k] * now_.ds[k]) * inverse_s_[k];
-  double fastest[kLanes], sum[3][kLanes] = {};
-  std::fill(fastest, fastest + kLanes, 1.0);
-  const auto visit = [&](int k, int lane) {
-    const double s = s_[k], z = z_[k], ds = now_.ds[k], dz = now_.dz[k];
-    const double fall = std::max(-ds * inverse_s_[k], -dz * inverse_z_[k]);
-    fastest[lane] = fastest[lane] < fall ? fall : fastest[lane];
-    sum[0][lane] += s * z;
-    sum[1][lane] += s * dz + z * ds;
-    sum[2][lane] += ds * dz;
+#pragma omp simd
+  for (int r = first; r < last; ++r) {
+    now.ds[r] = is_there[r] * (sign * dlambda[r]) + gap[r];
+    now.dz[r] = (now.c[r] - z[r] * now.ds[r]) * inverse_s[r];
+  }
+  double fastest[kLanes] = {}, sum[3][kLanes] = {};
+  const auto visit = [&](int r, int lane) {
+    fastest[lane] = greater(fastest[lane], greater(-now.ds[r] * inverse_s[r], -now.dz[r] * inverse_z[r]));
+    sum[0][lane] += s[r] * z[r];
+    sum[1][lane] += s[r] * now.dz[r] + z[r] * now.ds[r];
+    sum[2][lane] += now.ds[r] * now.dz[r];
   };
   const int whole = first + (last - first) / kLanes * kLanes;
-  for (int k = first; k < whole; k += kLanes) {
-    for (int lane = 0; lane < kLanes; ++lane) visit(k + lane, lane);
+  for (int r = first; r < whole; r += kLanes) {
+#pragma omp simd
+    for (int lane = 0; lane < kLanes; ++lane) visit(r + lane, lane);
   }
-  for (int k = whole; k < last; ++k) visit(k, 0);
-  course.largest_step = *std::max_element(fastest, fastest + kLanes);
+  for (int r = whole; r < last; ++r) visit(r, r - whole);
+  course.largest_step = std::max(course.largest_step, *std::max_element(fastest, fastest + kLanes));
   for (int power = 0; power < 3; ++power)
-    course.product[power] = std::accumulate(sum[power], sum[power] + kLanes, 0.0);
+    course.product[power] += std::accumulate(sum[power], sum[power] + kLanes, 0.0);
 }
 
 BarrierCourse IntervalBarrier::follow(SolveState& state) {
   courses_.assign(state.range_count(), BarrierCourse{});
-  run_over_pairs(state, [&](int first, int last, int range) {
-    follow_range(first, last, state.dlambda, courses_[range]);
+  state.run_over_rows([&](int first, int last, int range) {
+    for (Side& side : sides_) side.follow(first, last, state.dlambda, courses_[range]);
   });
   return join_courses(courses_);
 }
 
+void IntervalBarrier::Side::correct(int first, int last, double trial, double low, double high) {
+#pragma omp simd
+  for (int r = first; r < last; ++r) {
+    const double product = (s[r] + trial * before.ds[r]) * (z[r] + trial * before.dz[r]);
+    const double short_of = greater(low - product, 0.0), beyond = greater(lesser(high - product, 0.0), -high);
+    now.c[r] = before.c[r] + is_there[r] * (short_of + beyond);
+  }
+}
+
 void IntervalBarrier::correct(SolveState& state, double trial, double low, double high) {
-  run_over_pairs(state, [&](int first, int last, int) {
-    for (int k = first; k < last; ++k) {
-      const double product = (s_[k] + trial * now_.ds[k]) * (z_[k] + trial * now_.dz[k]);
-      if (product < low) now_.c[k] += low - product;
-      if (product > high) now_.c[k] += std::max(high - product, -high);
-    }
+  for (Side& side : sides_) std::swap(side.now, side.before);
+  state.run_over_rows([&](int first, int last, int) {
+    for (Side& side : sides_) side.correct(first, last, trial, low, high);
   });
+}
+
+void IntervalBarrier::restore_direction() {
+  for (Side& side : sides_) std::swap(side.now, side.before);
 }
 
 void IntervalBarrier::advance(SolveState& state, double step) {
-  state.run_over_rows([&](int first, int last, int range) {
-    for (int r = first; r < last; ++r) {
-      if (!is_fixed(r)) state.impulse[r] += step * state.dlambda[r];
-    }
-    for (int k = pair_first_[range]; k < pair_first_[range + 1]; ++k) {
-      s_[k] += step * now_.ds[k];
-      z_[k] += step * now_.dz[k];
+  state.run_over_rows([&](int first, int last, int) {
+#pragma omp simd
+    for (int r = first; r < last; ++r) state.impulse[r] += step * moves_[r] * state.dlambda[r];
+    for (Side& side : sides_) {
+#pragma omp simd
+      for (int r = first; r < last; ++r) {
+        side.s[r] += step * side.now.ds[r];
+        side.z[r] += step * side.now.dz[r];
+      }
     }
   });
 }
 
+double IntervalBarrier::Side::error(int first, int last, std::span<const double> d,
+                                    std::span<double> row_error) const {
+  double worst = 0;
+#pragma omp simd reduction(max : worst)
+  for (int r = first; r < last; ++r) {
+    worst = greater(worst, lesser(d[r] * s[r], z[r]));
+    row_error[r] -= sign * z[r];
+  }
+  return worst;
+}
+
 double IntervalBarrier::error(SolveState& state, std::span<double> row_error) {
-  const std::span<const double> d = state.step->diagonal();
   worst_.assign(state.range_count(), 0.0);
   state.run_over_rows([&](int first, int last, int range) {
-    std::copy(state.slack.begin() + first, state.slack.begin() + last, row_error.begin() + first);
-    for (int k = pair_first_[range]; k < pair_first_[range + 1]; ++k) {
-      worst_[range] = std::max(worst_[range], std::min(d[pairs_[k].row] * s_[k], z_[k]));
-      row_error[pairs_[k].row] -= pairs_[k].sign * z_[k];
-    }
+#pragma omp simd
+    for (int r = first; r < last; ++r) row_error[r] = moves_[r] * state.slack[r];
+    for (const Side& side : sides_)
+      worst_[range] = std::max(worst_[range], side.error(first, last, state.step->diagonal(), row_error));
   });
   return worst_.empty() ? 0.0 : std::ranges::max(worst_);
 }
@@ -168,13 +214,19 @@ double IntervalBarrier::error(SolveState& state, std::span<double> row_error) {
 void IntervalBarrier::read_active_set(SolveState& state) const {
   for (std::size_t r = 0; r < use_.size(); ++r) {
     state.state[r] = is_fixed(r) ? RowState::lower : RowState::free;
-  }
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    const auto [r, sign, bound] = pairs_[k];
-    if (state.step->diagonal()[r] * s_[k] < z_[k]) {
-      state.state[r] = sign > 0 ? RowState::lower : RowState::upper;
+    for (const Side& side : sides_) {
+      if (state.step->diagonal()[r] * side.s[r] < side.z[r])
+        state.state[r] = side.sign > 0 ? RowState::lower : RowState::upper;
     }
   }
+}
+
+void IntervalBarrier::keep() {
+  for (Side& side : sides_) side.kept_s = side.s, side.kept_z = side.z;
+}
+
+void IntervalBarrier::restore() {
+  for (Side& side : sides_) side.s = side.kept_s, side.z = side.kept_z;
 }
 
 }  // namespace cleave

@@ -14,11 +14,15 @@
 //
 //     D_r = 1 / (C_r + sum z / s),   f_r = -w + sum sigma (z + (c - z gap) / s).
 //
-// Loops over pairs are dealt out in the ranges of SolveState::run_over_rows; a row's pairs are of its range.
+// Lower and upper bounds are a side each, with a place for every row, so that loops over them are vector instructions without
+// gathering. Where a row has no such bound its place holds s = 1 and zeros, which add nothing. Loops are dealt out in the
+// ranges of SolveState::run_over_rows.
 //
-// Rows whose bounds coincide are fixed, with D = 0; unbounded rows and those of cones have no pair.
+// Rows whose bounds coincide are fixed, with D = 0.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -55,10 +59,10 @@ class IntervalBarrier {
   void right_hand_side(SolveState& state) const;  // state.f_r from state.slack
   BarrierCourse follow(SolveState& state);        // ds and dz from state.dlambda; returns where they lead
 
-  // Aims products that a step of `trial` would leave outside of [low, high] back at it.
+  // Aims products that a step of `trial` would leave outside of [low, high] back at it; restore_direction brings back the
+  // direction from before.
   void correct(SolveState& state, double trial, double low, double high);
-  void keep_direction() { before_ = now_; }
-  void restore_direction() { now_ = before_; }
+  void restore_direction();
 
   void advance(SolveState& state, double step);  // impulses, slacks and multipliers
   // row_error (m): what is left of the equation in w. Returns the largest min(d s, z).
@@ -68,38 +72,47 @@ class IntervalBarrier {
   void read_active_set(SolveState& state) const;
 
   // One iterate, to come back to.
-  void keep() { kept_s_ = s_, kept_z_ = z_; }
-  void restore() { s_ = kept_s_, z_ = kept_z_; }
+  void keep();
+  void restore();
 
   bool is_fixed(std::size_t row) const { return use_[row] == RowUse::fixed; }
   bool is_of_cone(std::size_t row) const { return use_[row] == RowUse::of_cone; }
-  std::size_t product_count() const { return pairs_.size(); }
+  std::size_t product_count() const { return bounds_; }
 
  private:
-  struct Pair {
-    int row;
-    double sign, bound;  // sigma, beta
-  };
   struct Direction {
     std::vector<double> ds, dz, c;
   };
+  // The lower or the upper bounds of all rows.
+  struct Side {
+    explicit Side(double sign_of_bound) : sign(sign_of_bound) {}
+    void start(std::size_t rows);  // without bounds
+    void add(int row, double value, double impulse, double multiplier);
+    void weigh(int first, int last, std::span<const double> impulse, std::span<double> weight);
+    void aim(int first, int last, double product, double share);
+    void add_force(int first, int last, std::span<double> f_r) const;
+    void follow(int first, int last, std::span<const double> dlambda, BarrierCourse& course);
+    void correct(int first, int last, double trial, double low, double high);
+    double error(int first, int last, std::span<const double> d, std::span<double> row_error) const;
+
+    double sign;                                    // sigma
+    std::vector<double> is_there;                   // 1, or 0 where a row has no such bound
+    std::vector<double> bound, s, z;                // beta
+    std::vector<double> inverse_s, inverse_z, gap;  // of the iterate that was factored
+    Direction now, before;
+    std::vector<double> kept_s, kept_z;
+  };
   enum class RowUse : std::uint8_t { bounded, fixed, of_cone };
 
-  void add_pairs(SolveState& state, int row, double speed);
-  template <class Task>
-  void run_over_pairs(SolveState& state, const Task& task) const;
-  void follow_range(int first, int last, std::span<const double> dlambda, BarrierCourse& course);
+  void add_bounds(SolveState& state, int row, double speed);
 
   InteriorConstants constants_;
-  std::vector<Pair> pairs_;             // ascending row
-  std::vector<int> pair_first_;         // (ranges + 1)
-  std::vector<BarrierCourse> courses_;  // scratch: of the ranges, largest_step its inverse
-  std::vector<double> worst_;           // scratch: of the ranges
-  std::vector<RowUse> use_;             // (m)
-  std::vector<double> s_, z_;
-  std::vector<double> inverse_s_, inverse_z_, gap_;  // of the iterate that was factored
-  Direction now_, before_;
-  std::vector<double> kept_s_, kept_z_;
+  std::array<Side, 2> sides_ = {Side(1), Side(-1)};  // lower, upper
+  std::size_t bounds_ = 0;                           // finite ones
+  std::vector<BarrierCourse> courses_;               // scratch: of the ranges, largest_step its inverse
+  std::vector<double> worst_;                        // scratch: of the ranges
+  std::vector<RowUse> use_;                          // (m)
+  std::vector<double> moves_;                        // (m) 0 where a row is fixed, else 1
 };
 
 }  // namespace cleave
