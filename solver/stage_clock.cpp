@@ -58,15 +58,21 @@ void StageClock::model_stage(const TaskGraph* graph, std::span<double> task_ms) 
   for (double& task : task_ms) task += 1e-3 * (task_us - dispatch_.timing_us);
   if (graph == nullptr) std::ranges::sort(task_ms, std::greater<>());
   const double gain_ms = on_one_ms - 1e-3 * dispatch_.stage_us;
+  const double longest_ms = graph == nullptr ? task_ms.front() : schedule_.critical_path_ms(*graph, task_ms);
+  // Where so many workers take no more than the longest way, neither do more of them: a schedule takes longer to find than
+  // many a stage to run.
+  bool is_longest = false;
   for (std::size_t k = 0; k < kModelWorkers.size(); ++k) {
     const int workers = kModelWorkers[k];
     if (workers == 1) continue;
-    times_.model_ms[k] += (graph == nullptr ? makespan_ms(task_ms, workers, worker_ms_)
-                                            : schedule_.makespan_ms(*graph, task_ms, workers)) -
-                          gain_ms;
+    is_longest = is_longest || workers >= static_cast<int>(task_ms.size());
+    const double taken_ms = is_longest         ? longest_ms
+                            : graph == nullptr ? makespan_ms(task_ms, workers, worker_ms_)
+                                               : schedule_.makespan_ms(*graph, task_ms, workers);
+    is_longest = taken_ms <= longest_ms;
+    times_.model_ms[k] += taken_ms - gain_ms;
   }
-  times_.critical_path_ms +=
-      (graph == nullptr ? task_ms.front() : schedule_.critical_path_ms(*graph, task_ms)) - gain_ms;
+  times_.critical_path_ms += longest_ms - gain_ms;
 }
 
 }  // namespace cleave
