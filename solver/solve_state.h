@@ -95,9 +95,13 @@ struct SolveState {
   void flip(int row);
 
   // Light work on rows in ranges that depend on their number alone, one task each: task(first, last, range). Few rows are
-  // one range: to hand out a part of them would take longer than to do it.
-  static constexpr int kRowsOfARange = 1024, kFewRows = 4096;
-  int rows_of_a_range() const { return step->row_count() <= kFewRows ? kFewRows : kRowsOfARange; }
+  // one range: to hand out a part of them would take longer than to do it. On 200 rocks (2115 rows) ranges of 384 rows save
+  // two threads a tenth of a solve, mostly because what a thread wrote is still with it.
+  static constexpr int kFewRows = 1024, kLeastRowsOfARange = 384, kMostRowsOfARange = 1024, kRanges = 6;
+  int rows_of_a_range() const {
+    const int rows = step->row_count();
+    return rows <= kFewRows ? kFewRows : std::clamp(rows / kRanges, kLeastRowsOfARange, kMostRowsOfARange);
+  }
   int range_count() const { return (step->row_count() + rows_of_a_range() - 1) / rows_of_a_range(); }
   template <class Task>
   void run_over_rows(const Task& task);

@@ -32,8 +32,9 @@ TEST(RowRangesTest, HoldEveryRowOnce) {
     for (int r = first; r < last; ++r) ++visits[r];
   });
   EXPECT_EQ(visits, std::vector<int>(problem.row_count(), 1));
-  for (const int greatest :
-       {0, SolveState::kRowsOfARange - 1, SolveState::kRowsOfARange, problem.row_count() - 1})
+  const int rows_of_a_range = state.rows_of_a_range();
+  EXPECT_GT(state.range_count(), 1);
+  for (const int greatest : {0, rows_of_a_range - 1, rows_of_a_range, problem.row_count() - 1})
     EXPECT_EQ(state.greatest_over_rows([&](int r) { return r == greatest ? 2.0 : 1.0 * (r % 2); }), 2.0)
         << greatest;
   EXPECT_EQ(state.greatest_over_rows([](int r) { return r == 7 ? std::nan("") : 1.0; }),
