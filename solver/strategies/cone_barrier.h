@@ -19,7 +19,8 @@
 // methods for convex programming", Math. Oper. Res. 22, 1997; Vandenberghe, "The CVXOPT linear and quadratic cone program
 // solvers", 2010, section 4.3 (the update).
 //
-// With one tangent the third entry of every vector stays zero.
+// With one tangent the third entry of every vector stays zero. Contacts are taken four at a time (cone_lanes.h); where fewer
+// are left in a range of rows, the other lanes hold l = e, W = 1 and zeros, which add nothing.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,6 +28,7 @@
 #include <vector>
 
 #include "solver/solve_state.h"
+#include "solver/strategies/cone_lanes.h"
 #include "solver/strategies/interior_constants.h"
 #include "solver/strategies/interval_barrier.h"
 
@@ -54,33 +56,41 @@ class ConeBarrier {
   // (cones) mu |w_t| after a full step along the direction, m/s; 0 where the law is not Coulomb's.
   void predict_shift(SolveState& state, std::span<double> shift) const;
   void correct(SolveState& state, double trial, double low, double high);
-  void restore_direction() { now_ = before_; }
+  void restore_direction() { now_.swap(before_); }
   // The largest entry of f_r - J dv - D^-1 dlambda on the rows of cones; row_velocity (m): J dv.
   double rounding(SolveState& state, std::span<const double> row_velocity);
   void advance(SolveState& state, double step);  // slacks and multipliers; impulses are IntervalBarrier's
 
   void keep() { kept_ = point_; }
   void restore() { point_ = kept_; }
-  std::size_t product_count() const { return point_.size(); }
+  std::size_t product_count() const { return count_; }
 
  private:
+  struct Contacts {
+    LaneVector load(std::span<const double> x) const;  // zero in the other lanes
+    void store(const LaneVector& lanes, std::span<double> x) const;
+
+    const FrictionCone* cone[kContactLanes] = {};
+    int count = 0;
+    Lanes mu = Lanes::Ones(), is_there = Lanes::Zero();
+  };
   struct Point {
-    Eigen::Matrix3d w, w_inverse;
-    Eigen::Vector3d l, s, z;
+    LaneMatrix w, w_inverse;
+    LaneVector l, s, z;
   };
   struct Direction {
-    Eigen::Vector3d ds, dz, c, q;  // scaled
+    LaneVector ds, dz, c, q;  // scaled
   };
 
+  void list_contacts(const SolveState& state);
   template <class Task>
-  void run_over_cones(SolveState& state, const Task& task) const;
-  // The greatest of velocity_of(cone, k), m/s.
-  template <class Velocity>
-  double greatest(SolveState& state, const Velocity& velocity_of);
+  void run_over_contacts(SolveState& state, const Task& task) const;
 
-  std::vector<int> cone_first_;  // (ranges + 1) of SolveState::run_over_rows, by their normal rows
+  std::vector<Contacts> contacts_;
+  std::vector<int> contacts_first_;  // (ranges + 1) of SolveState::run_over_rows, by their normal rows
+  std::size_t count_ = 0;            // of cones
   std::vector<Point> point_, kept_;
-  std::vector<Eigen::Vector3d> scaled_gap_, compliance_;  // of the iterate that was factored: W^-T gap; C
+  std::vector<LaneVector> scaled_gap_, compliance_;  // of the iterate that was factored: W^-T gap; C
   std::vector<Direction> now_, before_;
   std::vector<BarrierCourse> courses_;  // scratch: of the ranges, largest_step its inverse
   std::vector<double> worst_;           // scratch: of the ranges

@@ -90,7 +90,7 @@ void IntervalBarrier::Side::weigh(int first, int last, std::span<const double> i
 
 void IntervalBarrier::weigh(SolveState& state, std::span<double> weight) {
   state.run_over_rows([&](int first, int last, int) {
-    for (Side& side : sides_) side.weigh(first, last, state.impulse, weight);
+    for (Side& side : sides()) side.weigh(first, last, state.impulse, weight);
 #pragma omp simd
     for (int r = first; r < last; ++r) weight[r] = moves_[r] / weight[r];
   });
@@ -105,7 +105,7 @@ void IntervalBarrier::Side::aim(int first, int last, double product, double shar
 void IntervalBarrier::aim(SolveState& state, double product, bool second_order) {
   const double share = second_order ? 1.0 : 0.0;
   state.run_over_rows([&](int first, int last, int) {
-    for (Side& side : sides_) side.aim(first, last, product, share);
+    for (Side& side : sides()) side.aim(first, last, product, share);
   });
 }
 
@@ -118,7 +118,7 @@ void IntervalBarrier::right_hand_side(SolveState& state) const {
   state.run_over_rows([&](int first, int last, int) {
 #pragma omp simd
     for (int r = first; r < last; ++r) state.f_r[r] = -moves_[r] * state.slack[r];
-    for (const Side& side : sides_) side.add_force(first, last, state.f_r);
+    for (const Side& side : sides()) side.add_force(first, last, state.f_r);
   });
 }
 
@@ -150,7 +150,7 @@ void IntervalBarrier::Side::follow(int first, int last, std::span<const double> 
 BarrierCourse IntervalBarrier::follow(SolveState& state) {
   courses_.assign(state.range_count(), BarrierCourse{});
   state.run_over_rows([&](int first, int last, int range) {
-    for (Side& side : sides_) side.follow(first, last, state.dlambda, courses_[range]);
+    for (Side& side : sides()) side.follow(first, last, state.dlambda, courses_[range]);
   });
   return join_courses(courses_);
 }
@@ -167,7 +167,7 @@ void IntervalBarrier::Side::correct(int first, int last, double trial, double lo
 void IntervalBarrier::correct(SolveState& state, double trial, double low, double high) {
   for (Side& side : sides_) std::swap(side.now, side.before);
   state.run_over_rows([&](int first, int last, int) {
-    for (Side& side : sides_) side.correct(first, last, trial, low, high);
+    for (Side& side : sides()) side.correct(first, last, trial, low, high);
   });
 }
 
@@ -179,7 +179,7 @@ void IntervalBarrier::advance(SolveState& state, double step) {
   state.run_over_rows([&](int first, int last, int) {
 #pragma omp simd
     for (int r = first; r < last; ++r) state.impulse[r] += step * moves_[r] * state.dlambda[r];
-    for (Side& side : sides_) {
+    for (Side& side : sides()) {
 #pragma omp simd
       for (int r = first; r < last; ++r) {
         side.s[r] += step * side.now.ds[r];
@@ -205,7 +205,7 @@ double IntervalBarrier::error(SolveState& state, std::span<double> row_error) {
   state.run_over_rows([&](int first, int last, int range) {
 #pragma omp simd
     for (int r = first; r < last; ++r) row_error[r] = moves_[r] * state.slack[r];
-    for (const Side& side : sides_)
+    for (const Side& side : sides())
       worst_[range] = std::max(worst_[range], side.error(first, last, state.step->diagonal(), row_error));
   });
   return worst_.empty() ? 0.0 : std::ranges::max(worst_);

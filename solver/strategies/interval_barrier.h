@@ -105,6 +105,9 @@ class IntervalBarrier {
   enum class RowUse : std::uint8_t { bounded, fixed, of_cone };
 
   void add_bounds(SolveState& state, int row, double speed);
+  // None where no row has a bound.
+  std::span<Side> sides() { return std::span(sides_).first(bounds_ > 0 ? 2 : 0); }
+  std::span<const Side> sides() const { return std::span(sides_).first(bounds_ > 0 ? 2 : 0); }
 
   InteriorConstants constants_;
   std::array<Side, 2> sides_ = {Side(1), Side(-1)};  // lower, upper

@@ -1,0 +1,107 @@
+// Four friction contacts side by side: vectors and matrices of a contact whose entries are a lane for each of the four, and the
+// algebra of the second-order cone Q = { x: |x_t| <= x_n } on them, in vector instructions.
+//
+// With x o y = (x . y, x_n y_t + y_n x_t), e = (1, 0, 0) is the one, and x_n +- |x_t| are the eigenvalues of x. Source:
+// Vandenberghe, "The CVXOPT linear and quadratic cone program solvers", 2010, section 4.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace cleave {
+
+inline constexpr int kContactLanes = 4;
+using Lanes = Eigen::Array<double, kContactLanes, 1>;
+
+struct LaneVector {
+  Lanes n = Lanes::Zero(), u = Lanes::Zero(), v = Lanes::Zero();  // along the normal and the two tangents
+};
+
+struct LaneMatrix {
+  LaneVector row[3];
+};
+
+inline LaneVector operator+(const LaneVector& x, const LaneVector& y) {
+  return {x.n + y.n, x.u + y.u, x.v + y.v};
+}
+inline LaneVector operator-(const LaneVector& x, const LaneVector& y) {
+  return {x.n - y.n, x.u - y.u, x.v - y.v};
+}
+inline LaneVector operator*(const Lanes& a, const LaneVector& x) { return {a * x.n, a * x.u, a * x.v}; }
+inline Lanes dot(const LaneVector& x, const LaneVector& y) { return x.n * y.n + x.u * y.u + x.v * y.v; }
+
+inline LaneVector operator*(const LaneMatrix& a, const LaneVector& x) {
+  return {dot(a.row[0], x), dot(a.row[1], x), dot(a.row[2], x)};
+}
+inline LaneVector transposed_times(const LaneMatrix& a, const LaneVector& x) {
+  return x.n * a.row[0] + x.u * a.row[1] + x.v * a.row[2];
+}
+inline LaneMatrix operator*(const LaneMatrix& a, const LaneMatrix& b) {
+  return {transposed_times(b, a.row[0]), transposed_times(b, a.row[1]), transposed_times(b, a.row[2])};
+}
+
+inline Lanes tangential(const LaneVector& x) { return (x.u * x.u + x.v * x.v).sqrt(); }
+
+// sqrt(x_n^2 - |x_t|^2), without the difference of two squares.
+inline Lanes hyperbolic_norm(const LaneVector& x) {
+  const Lanes t = tangential(x);
+  return ((x.n - t) * (x.n + t)).max(0.0).sqrt();
+}
+
+inline Lanes hyperbolic_product(const LaneVector& x, const LaneVector& y) {
+  return x.n * y.n - x.u * y.u - x.v * y.v;
+}
+
+inline LaneVector jordan_product(const LaneVector& x, const LaneVector& y) {
+  return {dot(x, y), x.n * y.u + y.n * x.u, x.n * y.v + y.n * x.v};
+}
+
+// q of l o q = c.
+inline LaneVector jordan_divide(const LaneVector& c, const LaneVector& l) {
+  const Lanes norm = hyperbolic_norm(l);
+  const Lanes normal = hyperbolic_product(l, c) / (norm * norm);
+  return {normal, (c.u - normal * l.u) / l.n, (c.v - normal * l.v) / l.n};
+}
+
+// The inverse of the step along y at which l + step y leaves Q; 0 or less where it never does. It is the least eigenvalue of
+// y in the coordinates where l is e.
+inline Lanes inverse_step(const LaneVector& l, const LaneVector& y) {
+  const Lanes norm = hyperbolic_norm(l);
+  const LaneVector unit = norm.inverse() * l;
+  const Lanes along = hyperbolic_product(unit, y);
+  const Lanes share = (along + y.n) / (unit.n + 1);
+  return (tangential(y - share * unit) - along) / norm;
+}
+
+// What brings the eigenvalues of a product within [low, high], by no more than -high downwards.
+inline LaneVector change_into_band(const LaneVector& product, double low, double high) {
+  constexpr double kLeastTangent = 1e-300;  // a tangent of zero has no direction, and none is asked for
+  const auto change = [&](const Lanes& eigenvalue) -> Lanes {
+    return (low - eigenvalue).max(0.0) + (high - eigenvalue).min(0.0).max(-high);
+  };
+  const Lanes t = tangential(product);
+  const Lanes rise = change(product.n + t), fall = change(product.n - t);
+  const Lanes along = 0.5 * (rise - fall) / t.max(kLeastTangent);
+  return {0.5 * (rise + fall), along * product.u, along * product.v};
+}
+
+// The symmetric V with V z = V^-1 s, of s and z inside Q.
+struct LaneScaling {
+  LaneMatrix v, v_inverse;
+};
+
+inline LaneScaling find_scaling(const LaneVector& s, const LaneVector& z) {
+  const Lanes s_norm = hyperbolic_norm(s), z_norm = hyperbolic_norm(z);
+  const LaneVector s_unit = s_norm.inverse() * s, z_unit = z_norm.inverse() * z;
+  const Lanes twice_half = 2 * ((1 + dot(s_unit, z_unit)) / 2).sqrt();
+  const Lanes a = (s_unit.n + z_unit.n) / twice_half;
+  const Lanes b = (s_unit.u - z_unit.u) / twice_half, c = (s_unit.v - z_unit.v) / twice_half;
+  const Lanes eta = (s_norm / z_norm).sqrt(), share = (1 + a).inverse();
+  const Lanes uu = 1 + b * b * share, uv = b * c * share, vv = 1 + c * c * share;
+  const auto rows = [&](const Lanes& scale, double sign) -> LaneMatrix {
+    const Lanes nu = sign * scale * b, nv = sign * scale * c;
+    return {{{scale * a, nu, nv}, {nu, scale * uu, scale * uv}, {nv, scale * uv, scale * vv}}};
+  };
+  return {rows(eta, 1), rows(eta.inverse(), -1)};
+}
+
+}  // namespace cleave
