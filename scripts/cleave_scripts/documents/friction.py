@@ -1,12 +1,15 @@
-"""What the cheaper friction models change, in one step and in a motion."""
+"""What the cheaper friction models change, in one step and in a motion, and what the others cost."""
 import statistics
 
 from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements.friction_cost import CONE_OPTIONS, LAW_OPTIONS
 from cleave_scripts.measurements.friction_of_models import IN_A_STEP, MODELS
+from cleave_scripts.measurements.friction_ratios import markdown
 from cleave_scripts.table import text
 
 MADE_BY = "scripts/friction_models"
 VELOCITIES, MOTION = (("friction_velocities.csv", MADE_BY), ("friction_motion.csv", MADE_BY))
+COST = ("friction_cost.csv", "scripts/friction_cost")
 
 
 def _of_rms(row):
@@ -47,6 +50,14 @@ def friction_motion(stored):
             "factorisations of a measured step (mean), and the steps that were not solved within the limit:\n\n" +
             text.table(["scene", "model", "height, m", "run-out, m", "kinetic energy, kJ", "potential energy, kJ", "penetration, mm",
                         "factorisations", "unsolved steps"], lines))
+
+
+def friction_cost(stored):
+    rows = need(stored.table(*COST), "costs of friction models", "friction_mismatch")
+    cones, laws = markdown(rows)
+    return (f"Recorded steps, the two models in turn on one thread, medians of {len({row['round'] for row in rows})} rounds (`{COST[1]}`; "
+            f"{stored.origin(COST[0])}). Rock piles that the exact box moves, their steps by `{CONE_OPTIONS[1]}` from zero impulses. {cones}\n\n"
+            f"Scenes that Coulomb's law moves, their steps by `{LAW_OPTIONS[1]}` from the impulses of the step before. {laws}")
 
 
 BLOCKS = {"friction_velocities": friction_velocities, "friction_motion": friction_motion}
