@@ -157,7 +157,7 @@ class FrictionCostTest(StandInCase):
         self.assertEqual([" ".join(call[:5]) for call in calls[:2]],
                          ["record --scene rock_pile --at 100,150,200,250,300", "record --scene rock_pile --at " + ",".join(map(str, range(40)))])
         self.assertIn("--bodies 200 --cfm 1e-5", " ".join(calls[0]))
-        self.assertIn("--friction coulomb", " ".join(calls[1]))
+        self.assertIn("--threads 2 --friction coulomb", " ".join(calls[1]))
         replayed = [(call[call.index("--friction") + 1], sum(word.endswith(".h5") for word in call), "--write-solutions" in call, "--cold" in call)
                     for call in calls[2:]]
         first, rest = SIDE_BY_SIDE, 40 - SIDE_BY_SIDE
