@@ -101,7 +101,7 @@ class LawTest(unittest.TestCase):
 def rows_of(cold, friction, times_ms, **others):
     """Rows of a step each, of two rounds of which the second takes twice as long."""
     return [{"scene": "rock_pile", "bodies": "200", "cfm": "1e-08", "cold": cold, "friction": friction, "step": step, "round": number,
-             "t_s_ms": t_s_ms * number, "iterations": 9 + step, "status": "ok", "friction_mismatch": 1e-7} | others
+             "t_s_ms": t_s_ms * number, "t_s_waiting_ms": t_s_ms * number / 4, "iterations": 9 + step, "status": "ok", "friction_mismatch": 1e-7} | others
             for number in (1, 2) for step, t_s_ms in enumerate(times_ms)]
 
 
@@ -142,6 +142,7 @@ class RatiosTest(unittest.TestCase):
         stored_data.write_provenance(root, "friction_cost.csv")
         told = friction.friction_cost(Stored(root))
         self.assertIn("medians of 2 rounds", told)
+        self.assertIn("The solves waited 25 % of their time for a core.", told)
         self.assertIn("0 of 1 hold: the cone", told)
         self.assertIn("| 200 | 1e-8 | 2 | 22.5 | 41.2 | 1.75 | 2.00 | 10 | 10 | 0 | 0 | no |", told)
         self.assertIn("1 of 1 hold: at least 95 % of the steps are within 1e-6", told)

@@ -105,6 +105,12 @@ LAW_HEADER = ("scene", "steps", "box, ms", "Coulomb, ms", "Coulomb / box, of sum
               "Coulomb", "above the limit, box", "Coulomb", "holds")
 
 
+def waited(rows):
+    """Of a busy machine the times say less."""
+    share = sum(float(row["t_s_waiting_ms"]) for row in rows) / sum(float(row["t_s_ms"]) for row in rows)
+    return f"The solves waited {text.percent(share)} of their time for a core."
+
+
 def markdown(rows):
     """Two texts: cones and Coulomb's law, each with how many of its lines hold; of what was not measured there is none."""
     cones, laws = cone_costs(rows), law_costs(rows)
