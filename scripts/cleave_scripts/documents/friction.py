@@ -1,12 +1,15 @@
-"""What the cheaper friction models change, in one step and in a motion."""
+"""What the cheaper friction models change, in one step and in a motion, and what the others cost."""
 import statistics
 
 from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements.friction_cost import CONE_OPTIONS, LAW_OPTIONS
 from cleave_scripts.measurements.friction_of_models import IN_A_STEP, MODELS
+from cleave_scripts.measurements.friction_ratios import markdown, waited
 from cleave_scripts.table import text
 
 MADE_BY = "scripts/friction_models"
 VELOCITIES, MOTION = (("friction_velocities.csv", MADE_BY), ("friction_motion.csv", MADE_BY))
+COST = ("friction_cost.csv", "scripts/friction_cost")
 
 
 def _of_rms(row):
@@ -49,4 +52,12 @@ def friction_motion(stored):
                         "factorisations", "unsolved steps"], lines))
 
 
-BLOCKS = {"friction_velocities": friction_velocities, "friction_motion": friction_motion}
+def friction_cost(stored):
+    rows = need(stored.table(*COST), "costs of friction models", "friction_mismatch")
+    cones, laws = markdown(rows)
+    return (f"Recorded steps, the two models in turn on one thread, medians of {len({row['round'] for row in rows})} rounds (`{COST[1]}`; "
+            f"{stored.origin(COST[0])}). {waited(rows)} Rock piles that the exact box moves, their steps by `{CONE_OPTIONS[1]}` from zero impulses. {cones}\n\n"
+            f"Scenes that Coulomb's law moves, their steps by `{LAW_OPTIONS[1]}` from the impulses of the step before. {laws}")
+
+
+BLOCKS = {"friction_velocities": friction_velocities, "friction_motion": friction_motion, "friction_cost": friction_cost}

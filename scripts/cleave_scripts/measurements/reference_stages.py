@@ -57,6 +57,7 @@ STAGES = (
     Stage("model_savings", ("model_savings", "--out", "{out}"), 3, files=(("model_savings.csv", "model_savings.csv"),)),
     Stage("friction_models", ("friction_models", "--out", "{out}"), 15,
           files=tuple((file, file) for file in ("friction_motion.csv", "friction_velocities.csv"))),
+    Stage("friction_cost", ("friction_cost", "--out", "{out}"), 15, files=(("friction_cost.csv", "friction_cost.csv"),)),
     Stage("campaign_costs", ("campaign_costs", "--paper", "{report}/paper", "--out", "{out}"), 12,
           files=(("campaign_costs.csv", "campaign_costs.csv"),)),
     Stage("hidden_choices", ("hidden_choices", "--out", "{out}", "--report", "{report}"), 50,
