@@ -99,8 +99,7 @@ TEST(Siconos, RefusesWhatIsNotItsOwn) {
   EXPECT_EQ(boxes.status, SolveStatus::refused);
   EXPECT_EQ(boxes.message, "solver siconos-nsgs takes contacts of Coulomb's law; that of row 0 has boxes");
   StepProblem chain = make_chain(1, {.links = 3});
-  EXPECT_NE(find_siconos_refusal(chain).find("row 0"), std::string::npos);
-  EXPECT_THROW(siconos_error(chain, chain.warm_impulse), std::invalid_argument);
+  EXPECT_THROW(siconos_error(chain, chain.warm_impulse), std::invalid_argument);  // no contacts
   solution = cold_start(chain);
   EXPECT_EQ(solver.solve(chain, {}, solution).status, SolveStatus::refused);
 }
