@@ -98,8 +98,8 @@ TEST(Siconos, RefusesWhatIsNotItsOwn) {
   const SolveSummary boxes = solver.solve(pile, {}, solution);
   EXPECT_EQ(boxes.status, SolveStatus::refused);
   EXPECT_EQ(boxes.message, "solver siconos-nsgs takes contacts of Coulomb's law; that of row 0 has boxes");
-  StepProblem chain = make_chain(1, {.links = 3});
-  EXPECT_THROW(siconos_error(chain, chain.warm_impulse), std::invalid_argument);  // no contacts
+  const StepProblem chain = make_chain(1, {.links = 3});  // no contacts
+  EXPECT_THROW(siconos_error(chain, chain.warm_impulse), std::invalid_argument);
   solution = cold_start(chain);
   EXPECT_EQ(solver.solve(chain, {}, solution).status, SolveStatus::refused);
 }

@@ -1,12 +1,14 @@
-"""What the cheaper friction models change, in one step and in a motion."""
+"""What the cheaper friction models change, in one step and in a motion, and Coulomb's law beside Siconos."""
 import statistics
 
 from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements import coulomb_beside_siconos as siconos
 from cleave_scripts.measurements.friction_of_models import IN_A_STEP, MODELS
 from cleave_scripts.table import text
 
 MADE_BY = "scripts/friction_models"
 VELOCITIES, MOTION = (("friction_velocities.csv", MADE_BY), ("friction_motion.csv", MADE_BY))
+COULOMB = ("coulomb_peers.csv", "scripts/coulomb_peers")
 
 
 def _of_rms(row):
@@ -49,4 +51,10 @@ def friction_motion(stored):
                         "factorisations", "unsolved steps"], lines))
 
 
-BLOCKS = {"friction_velocities": friction_velocities, "friction_motion": friction_motion}
+def coulomb_peers(stored):
+    rows = need(stored.table(*COULOMB), "Coulomb's law beside Siconos", "peer_siconos_error")
+    return (f"`exact` and the solvers of Siconos on the same recorded steps, {text.listed(siconos.MUS)} as coefficient of friction, from the same warm start "
+            f"(`{COULOMB[1]}`; {stored.origin(COULOMB[0])}). {siconos.counts(rows)}\n\n{siconos.scene_table(rows)}")
+
+
+BLOCKS = {"friction_velocities": friction_velocities, "friction_motion": friction_motion, "coulomb_peers": coulomb_peers}
