@@ -20,11 +20,12 @@ const Settings kSettings({{"peer-max-rows", "3000"},
                           {"peer-iterations", "100000"}});
 constexpr PeerFunction kBoth[] = {solve_siconos_nsgs, solve_siconos_newton};
 
-// A point of 2 kg that comes down at 1 m/s and moves at `speed` along `angle`.
-StepProblem landing_point(double speed, double angle_rad, double mu) {
+// A point of 2 kg, or another mass, that comes down at 1 m/s and moves at `speed` along `angle`.
+StepProblem landing_point(double speed, double angle_rad, double mu, double mass_kg = 2) {
   StepProblem problem;
   problem.h_s = kTestStep_s;
-  append_body(problem, 2, {1, 1, 1}, {speed * std::cos(angle_rad), speed * std::sin(angle_rad), -1, 0, 0, 0});
+  append_body(problem, mass_kg, {1, 1, 1},
+              {speed * std::cos(angle_rad), speed * std::sin(angle_rad), -1, 0, 0, 0});
   append_row(problem, {.jacobian_a = {0, 0, 1}, .compliance = 1e-9, .lower = 0, .kind = RowKind::normal});
   for (int t = 0; t < 2; ++t) {
     RowSpec row{.compliance = 1e-9, .kind = RowKind::friction, .friction_row = 0, .friction_coefficient = mu};
@@ -89,6 +90,20 @@ TEST(Siconos, ErrorIsTheFormula) {
   EXPECT_NEAR(siconos_error(problem, std::vector<double>(3, 0.0)),
               std::hypot(n, 0.5 * n) / std::hypot(1, 0.6), 1e-12);
   EXPECT_NEAR(siconos_error(problem, std::vector<double>{2, -1, 0}), 0, 1e-8);
+  // Impulses far above |q| do not count: a slip of 0.1 m/s inside of the cone stays one.
+  const StepProblem heavy = landing_point(0.1, 0, 0.5, 1e6);
+  EXPECT_NEAR(siconos_error(heavy, std::vector<double>{1e6, 0, 0}),
+              std::hypot(0.1, 0.5 * 0.1 + 1e-3) / std::hypot(1, 0.1), 1e-9);  // rounding of impulses
+}
+
+// Siconos by itself would be content with 2e-4 of |q| here.
+TEST(Siconos, IsRunToTheErrorAskedForAlsoUnderHeavyBodies) {
+  const StepProblem heavy = landing_point(0.6, 0, 0.5, 1e6);
+  for (const PeerFunction solve : kBoth) {
+    const PeerAnswer answer = solve(heavy, std::vector<double>{9.9e5, -4.9e5, 0}, kSettings);
+    EXPECT_TRUE(answer.claims_success) << answer.message;
+    EXPECT_LE(siconos_error(heavy, answer.impulse), 1e-10);
+  }
 }
 
 TEST(Siconos, RefusesWhatIsNotItsOwn) {
