@@ -64,8 +64,8 @@ class LimitsTest(unittest.TestCase):
                 row(mu="0.3", peer_siconos_error="nan"), row(mu="0.8", velocity_difference_m_per_s=0.5, peer_residual_m_per_s=1e-3),
                 row(mu="0.8", peer="siconos-nsgs")]
         told = counts(rows)
-        for words in ("4 problems. Solved by us: 3; of these Siconos's error is at most 1e-08 on 3 of 3, of all on 3 of 4.",
-                      "1e-10 4 of 6 times; of these our residual is at most 1e-06 m/s on 3 of 4.", "on 1 of 1 with mu <= 0.5 and on 1 of 2 with a larger one",
+        for words in ("4 problems. Solved by us: 3; of these Siconos's error is at most 1e-8 on 3 of 3, of all on 3 of 4.",
+                      "1e-10 4 of 6 times; of these our residual is at most 1e-6 m/s on 3 of 4.", "on 1 of 1 with mu <= 0.5 and on 1 of 2 with a larger one",
                       "not by us: 1 problems; by us alone: 1."):
             self.assertIn(words, told)
         self.assertIn("| silo | 1e-5 | 4 to 4 | 3 of 4 | 1.0e-14 | 1 of 4 | 3 of 4 | 0.00100 | 3 | 1.0e-9 | 0.500 |", scene_table(rows))

@@ -57,7 +57,7 @@ STAGES = (
     Stage("model_savings", ("model_savings", "--out", "{out}"), 3, files=(("model_savings.csv", "model_savings.csv"),)),
     Stage("friction_models", ("friction_models", "--out", "{out}"), 15,
           files=tuple((file, file) for file in ("friction_motion.csv", "friction_velocities.csv"))),
-    Stage("coulomb_peers", ("coulomb_peers", "--out", "{out}"), 15, files=(("coulomb_peers.csv", "coulomb_peers.csv"),)),
+    Stage("coulomb_peers", ("coulomb_peers", "--out", "{out}"), 10, files=(("coulomb_peers.csv", "coulomb_peers.csv"),)),
     Stage("campaign_costs", ("campaign_costs", "--paper", "{report}/paper", "--out", "{out}"), 12,
           files=(("campaign_costs.csv", "campaign_costs.csv"),)),
     Stage("hidden_choices", ("hidden_choices", "--out", "{out}", "--report", "{report}"), 50,
