@@ -2,9 +2,11 @@
 // (Alart and Curnier) of Siconos 4.4, both on the local form
 //
 //     u = W r + q,   W = J M^-1 J^T + C,   q = J v0 - b,    r_n >= 0, u_n >= 0, r_n u_n = 0,   |r_t| <= mu r_n and, sliding,
-//     r_t = -mu r_n u_t / |u_t|   (Acary, Bremond and Huber, "On solving contact problems with Coulomb friction", 2018).
+//     r_t = -mu r_n u_t / |u_t|   (Acary, Bremond and Huber, "On solving contact problems with Coulomb friction", 2018)
 //
-// They stop at an error (siconos.h) of `peer-tolerance`. W goes over in blocks of 3x3 to the first, as triplets to the second.
+// of the contacts, joints having been eliminated (contact_form.h).
+//
+// They are run to an error (siconos.h) of `peer-tolerance`. W goes over in blocks of 3x3 to the first, as triplets to the second.
 #include "harness/peers/siconos.h"
 
 #include <numerics/FrictionContactProblem.h>
@@ -19,16 +21,17 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "harness/base/stopwatch.h"
-#include "harness/peers/dense_problem.h"
+#include "harness/peers/contact_form.h"
 #include "harness/peers/peer.h"
 
 namespace cleave {
 namespace {
-
-constexpr int kDimension = 3;  // a normal and two tangents
 
 struct DeleteOptions {
   void operator()(SolverOptions* options) const { solver_options_delete(options); }
@@ -39,27 +42,24 @@ enum class Storage { triplets, blocks };
 // A problem of Siconos, in memory of its own kind: its functions free what they were given with free().
 class LocalForm {
  public:
-  LocalForm(const StepProblem& step, Storage storage) {
-    const DenseProblem dense = make_dense_problem(step);
-    const int m = dense.rows, contacts = m / kDimension;
-    q_ = dense.right_side;
-    for (double& value : q_) value = -value;
-    for (int c = 0; c < contacts; ++c) mu_.push_back(step.friction_coefficient[kDimension * c + 1]);
+  LocalForm(ContactForm form, Storage storage) : form_(std::move(form)) {
+    const int contacts = form_.contact_count(), m = kRowsOfContact * contacts;
     matrix_ = NM_create(NM_SPARSE, m, m);
     NM_triplet_alloc(matrix_, m);
     matrix_->matrix2->origin = NSM_TRIPLET;
     for (int r = 0; r < m; ++r)
       for (int c = 0; c < m; ++c)
-        if (const double value = dense.matrix[static_cast<std::size_t>(m) * r + c]; value != 0)
+        if (const double value = form_.matrix[static_cast<std::size_t>(m) * r + c]; value != 0)
           NM_entry(matrix_, r, c, value);
     if (storage == Storage::blocks) {
       NumericsMatrix* triplets = matrix_;
       SparseBlockStructuredMatrix* blocks = SBM_new();
-      SBM_from_csparse(kDimension, NM_csc(triplets), blocks);
+      SBM_from_csparse(kRowsOfContact, NM_csc(triplets), blocks);
       matrix_ = NM_new_SBM(m, m, blocks);
       NM_free(triplets);
     }
-    problem_ = {kDimension, contacts, matrix_, q_.data(), mu_.data()};
+    problem_ = {kRowsOfContact, contacts, matrix_, form_.free_slack.data(),
+                form_.friction_coefficient.data()};
   }
   ~LocalForm() { NM_free(matrix_); }
   LocalForm(const LocalForm&) = delete;
@@ -68,63 +68,80 @@ class LocalForm {
   FrictionContactProblem* get() { return &problem_; }
   double norm_of_q() const {
     double sum = 0;
-    for (const double value : q_) sum += value * value;
+    for (const double value : form_.free_slack) sum += value * value;
     return std::sqrt(sum);
   }
 
  private:
-  std::vector<double> q_, mu_;
+  ContactForm form_;
   NumericsMatrix* matrix_;
   FrictionContactProblem problem_;
 };
 
+std::unique_ptr<SolverOptions, DeleteOptions> make_options(int solver) {
+  return std::unique_ptr<SolverOptions, DeleteOptions>(solver_options_create(solver));
+}
+
+// Siconos divides by the largest of |r|, |u| and a norm that it is given, and impulses of heavy bodies are far above |q|. With a
+// power of two above all of them, what it divides by is known and taken back without rounding.
+double error_over_q(LocalForm& form, std::vector<double> reaction) {
+  const auto options = make_options(SICONOS_FRICTION_3D_NSGS);
+  const double above_all = std::ldexp(1.0, 300), norm = form.norm_of_q();
+  std::vector<double> velocity(reaction.size(), 0.0);
+  double error = 0;
+  fc3d_compute_error(form.get(), reaction.data(), velocity.data(), 1.0, options.get(), above_all, &error);
+  return error * above_all / (norm > 0 ? norm : 1.0);
+}
+
+// Its solvers stop in that other measure: they go on from where they stopped, with a smaller tolerance, until the error is
+// what was asked for or they give up.
+void run_to_tolerance(int solver, LocalForm& form, const Settings& settings, std::vector<double>& reaction,
+                      PeerAnswer& answer) {
+  const double wanted = settings.number(parameters::peer_tolerance().name);
+  const int most = settings.integer(parameters::peer_iterations().name);
+  std::vector<double> velocity(reaction.size(), 0.0);
+  answer.iterations = 0;
+  answer.solve_ms = 0;
+  int info = 0;
+  double error = 0;
+  for (double tolerance = wanted; info == 0 && answer.iterations < most; tolerance *= wanted / (2 * error)) {
+    const auto options = make_options(solver);
+    options->dparam[SICONOS_DPARAM_TOL] = tolerance;
+    options->iparam[SICONOS_IPARAM_MAX_ITER] = most - answer.iterations;
+    Stopwatch watch;
+    info = fc3d_driver(form.get(), reaction.data(), velocity.data(), options.get());
+    answer.solve_ms += watch.lap_ms();
+    answer.iterations += std::max(1, options->iparam[SICONOS_IPARAM_ITER_DONE]);
+    error = error_over_q(form, reaction);
+    answer.claims_success = error <= wanted;
+    if (answer.claims_success) return;
+  }
+  answer.message = "Siconos's fc3d_driver returned " + std::to_string(info);
+}
+
 PeerAnswer solve(int solver, Storage storage, const StepProblem& step, std::span<const double> start,
                  const Settings& settings) {
   PeerAnswer answer;
-  answer.message = find_siconos_refusal(step);
-  if (!answer.message.empty()) return answer;
-  LocalForm form(step, storage);
-  const std::unique_ptr<SolverOptions, DeleteOptions> options(solver_options_create(solver));
-  options->dparam[SICONOS_DPARAM_TOL] = settings.number(parameters::peer_tolerance().name);
-  options->iparam[SICONOS_IPARAM_MAX_ITER] = settings.integer(parameters::peer_iterations().name);
-  answer.impulse.assign(start.begin(), start.end());
-  std::vector<double> velocity(start.size(), 0.0);
-  Stopwatch watch;
-  const int info = fc3d_driver(form.get(), answer.impulse.data(), velocity.data(), options.get());
-  answer.solve_ms = watch.lap_ms();
-  answer.claims_success = info == 0;
-  if (info != 0) answer.message = "Siconos's fc3d_driver returned " + std::to_string(info);
-  answer.iterations = options->iparam[SICONOS_IPARAM_ITER_DONE];
+  std::optional<ContactForm> contacts;
+  try {
+    contacts.emplace(step);
+  } catch (const std::invalid_argument& refusal) {
+    answer.message = refusal.what();
+    return answer;
+  }
+  LocalForm form(*contacts, storage);
+  std::vector<double> reaction = contacts->contact_impulse(start);
+  run_to_tolerance(solver, form, settings, reaction, answer);
+  answer.impulse = contacts->whole_impulse(reaction);
   return answer;
 }
 
 }  // namespace
 
-std::string find_siconos_refusal(const StepProblem& problem) {
-  for (int r = 0; r < problem.row_count(); ++r) {
-    const int place = r % kDimension;
-    const bool fits = place == 0
-                          ? problem.row_kind[r] == RowKind::normal
-                          : problem.row_kind[r] == RowKind::friction && problem.friction_row[r] == r - place;
-    if (!fits || problem.row_count() % kDimension != 0)
-      return "Siconos takes nothing but contacts of a normal row and two friction rows; row " +
-             std::to_string(r) + " is none of them, or the last contact has not all three";
-  }
-  return problem.row_count() == 0 ? "there are no contacts" : "";
-}
-
 double siconos_error(const StepProblem& problem, std::span<const double> impulse) {
-  if (const std::string refusal = find_siconos_refusal(problem); !refusal.empty())
-    throw std::invalid_argument(refusal);
-  LocalForm form(problem, Storage::triplets);
-  const std::unique_ptr<SolverOptions, DeleteOptions> options(
-      solver_options_create(SICONOS_FRICTION_3D_NSGS));
-  std::vector<double> reaction(impulse.begin(), impulse.end()), velocity(impulse.size(), 0.0);
-  double error = 0;
-  const double norm = form.norm_of_q();
-  fc3d_compute_error(form.get(), reaction.data(), velocity.data(), 1.0, options.get(), norm > 0 ? norm : 1.0,
-                     &error);
-  return error;
+  const ContactForm contacts(problem);
+  LocalForm form(contacts, Storage::triplets);
+  return error_over_q(form, contacts.contact_impulse(impulse));
 }
 
 PeerAnswer solve_siconos_nsgs(const StepProblem& problem, std::span<const double> start,

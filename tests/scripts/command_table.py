@@ -26,6 +26,7 @@ BAD = {
     "compliances": ("", "0,", "-1", "nan", "soft"),
     "range": ("", "1,", "2,1", "nan,1", "x"),
     "scenes": ("", "chain_drop,", "rock_pill"),
+    "recorded scenes": ("", "silo,", "sillo"),
     "rungs": ("", "no_contact,", "no_contract"),
     "climbers": ("", "exact,", "exakt", "nope:nope"),
     "partitioners": ("", "nope"),
@@ -53,7 +54,7 @@ BAD = {
 NEAR = {
     "rock_pill": "rock_pile", "no_contract": "no_contact", "exakt": "exact", "reech": "reach", "shur": "schur",
     "markdow": "markdown", "201": "200", "figure9": "figure", "parts": "part",
-    "edit": "edits", "scen": "scene", "eliptic": "elliptic"
+    "edit": "edits", "scen": "scene", "eliptic": "elliptic", "sillo": "silo"
 }
 
 MEASURED = {"--out": "output directory"}
@@ -70,6 +71,7 @@ COMMANDS = {
     "campaign_costs": Command({"--cells": "count", "--rounds": "count", "--paper": "input directory", **MEASURED}, runs=True),
     "check_matrix": Command({"--scene": "scenes", "--min-steps": "count"}, ("{tree}",), ("{tree}",), ("{tree}",)),
     "cold_starts": Command({"--seeds": "seeds", **MEASURED}, runs=True),
+    "coulomb_peers": Command({"--scene": "recorded scenes", **MEASURED}, runs=True),
     "extremes": Command({"--cfm": "compliances", "--seeds": "seeds", **SERIES}, runs=True),
     "extremes_table": Command({"--csv": "output file"}, ("{extremes}",), ("{extremes}",), ("{extremes}",)),
     "fuzz": Command({"--minutes": "count", "--target": "fuzz targets", "--minimise": "", "--page": "output file", **MEASURED}),

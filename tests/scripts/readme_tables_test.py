@@ -9,7 +9,7 @@ from synthetic import ROOT, SCRIPTS, run_script
 
 from cleave_scripts.documents import accuracy, campaigns, cuts, friction, hidden, large, markers, paper_claims, paper_table, sets, speed, stability, worth
 from cleave_scripts.documents.stored import NoResults, Stored
-from cleave_scripts.measurements import extremes_steps, friction_cost, large_scenes, running_simulation
+from cleave_scripts.measurements import coulomb_beside_siconos, extremes_steps, friction_cost, large_scenes, running_simulation
 from cleave_scripts.measurements.reference_stages import STAGES
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.table import text
@@ -51,7 +51,8 @@ class CheckoutTest(unittest.TestCase):
     def columns(self):
         """{small CSV file: its columns} as the commands write them."""
         written = {"extremes.csv": set(extremes_steps.WRITTEN), "running_simulation.csv": set(running_simulation.COLUMNS),
-                   "large_scenes.csv": set(large_scenes.COLUMNS), "friction_cost.csv": set(friction_cost.COLUMNS)}
+                   "large_scenes.csv": set(large_scenes.COLUMNS), "friction_cost.csv": set(friction_cost.COLUMNS),
+                   "coulomb_peers.csv": set(coulomb_beside_siconos.COLUMNS)}
         for command in ("two_threads", "modelled_workers", "busy_machine", "cold_starts", "karger", "partition_over_time", "ablation"):
             listed = re.search(r"^COLUMNS = \((.*?)\)", (SCRIPTS / command).read_text(), re.M | re.S)[1]
             written[f"{command}.csv"] = set(re.findall(r'"(\w+)"', listed))

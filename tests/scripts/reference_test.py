@@ -37,7 +37,7 @@ LEFT = {
     "running_simulation": ["running_simulation.csv"], "large_scenes": ["large_scenes.csv"],
     "model_savings": ["model_savings.csv"], "campaign_costs": ["campaign_costs.csv"],
     "friction_cost": ["friction_cost.csv"],
-    "friction_models": ["friction_motion.csv", "friction_velocities.csv"],
+    "friction_models": ["friction_motion.csv", "friction_velocities.csv"], "coulomb_peers": ["coulomb_peers.csv"],
     "hidden_choices": ["hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv", "verdict_map.png"],
     "tradeoff": ["tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "time_to_accuracy.png", "accuracy_profile.png"],
     "cold_starts": ["cold_starts.csv"], "ablation": ["ablation.csv"], "report": ["figures/verdicts.csv"],
@@ -101,7 +101,7 @@ class ReferenceTest(unittest.TestCase):
         """(what was called, what was said)"""
         self.log.write_text("")
         key = {"git_hash": self.git("rev-parse", "HEAD"), **key}
-        environment = dict(os.environ, CLEAVE_PROGRAM=str(self.directory / "cleave"), STAND_IN_LOG=str(self.log),
+        environment = dict(os.environ, CLEAVE_PROGRAM=str(self.directory / "cleave"), CLEAVE_PEERS=str(self.directory / "cleave"), STAND_IN_LOG=str(self.log),
                            STAND_IN=told, STAND_IN_KEY=json.dumps(key))
         result = run_script("reference", "--root", self.root, env=environment)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
@@ -120,7 +120,7 @@ class ReferenceTest(unittest.TestCase):
             "partition_benchmark.json",
             "dense_benchmark.json", "busy_machine.csv",
             "two_threads.csv", "karger.csv", "partition_over_time.csv", "partition_worth.csv", "partition_worth.png", "partition_regret.csv", "tradeoff.csv", "tradeoff_partitions.csv",
-            "tradeoff_motion.csv", "time_to_accuracy.png", "accuracy_profile.png", "model_savings.csv", "campaign_costs.csv", "friction_cost.csv", "friction_motion.csv", "friction_velocities.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
+            "tradeoff_motion.csv", "time_to_accuracy.png", "accuracy_profile.png", "model_savings.csv", "campaign_costs.csv", "friction_cost.csv", "friction_motion.csv", "friction_velocities.csv", "coulomb_peers.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
             "verdict_map.png", "modelled_workers.csv", "running_simulation.csv", "large_scenes.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
             "report/verdicts.csv", *(f"report/{run}/{file}" for run in ("scaling/bodies_50", "one_thread/rock_pile")
                                      for file in ("manifest.json", "steps.csv", "checksums")),

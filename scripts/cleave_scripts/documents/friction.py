@@ -1,7 +1,8 @@
-"""What the cheaper friction models change, in one step and in a motion, and what the others cost."""
+"""What the cheaper friction models change, in one step and in a motion, what the others cost, and Coulomb's law beside Siconos."""
 import statistics
 
 from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements import coulomb_beside_siconos as siconos
 from cleave_scripts.measurements.friction_cost import CONE_OPTIONS, LAW_OPTIONS
 from cleave_scripts.measurements.friction_of_models import IN_A_STEP, MODELS
 from cleave_scripts.measurements.friction_ratios import markdown, waited
@@ -10,6 +11,7 @@ from cleave_scripts.table import text
 MADE_BY = "scripts/friction_models"
 VELOCITIES, MOTION = (("friction_velocities.csv", MADE_BY), ("friction_motion.csv", MADE_BY))
 COST = ("friction_cost.csv", "scripts/friction_cost")
+COULOMB = ("coulomb_peers.csv", "scripts/coulomb_peers")
 
 
 def _of_rms(row):
@@ -60,4 +62,11 @@ def friction_cost(stored):
             f"Scenes that Coulomb's law moves, their steps by `{LAW_OPTIONS[1]}` from the impulses of the step before. {laws}")
 
 
-BLOCKS = {"friction_velocities": friction_velocities, "friction_motion": friction_motion, "friction_cost": friction_cost}
+def coulomb_peers(stored):
+    rows = need(stored.table(*COULOMB), "Coulomb's law beside Siconos", "peer_siconos_error")
+    return (f"`exact` and the solvers of Siconos on the same recorded steps, {text.listed(siconos.MUS)} as coefficient of friction, from the same warm start "
+            f"(`{COULOMB[1]}`; {stored.origin(COULOMB[0])}). {siconos.counts(rows)}\n\n{siconos.scene_table(rows)}")
+
+
+BLOCKS = {"friction_velocities": friction_velocities, "friction_motion": friction_motion, "friction_cost": friction_cost,
+          "coulomb_peers": coulomb_peers}

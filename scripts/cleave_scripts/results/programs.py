@@ -12,6 +12,8 @@ from cleave_scripts.results.errors import AlreadyTold, ResultError
 from cleave_scripts.results.steps import load_steps
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
+# Programs of the preset peers, and the variables that name others.
+PEERS, MUJOCO = ("cleave_peers", "CLEAVE_PEERS"), ("cleave_mujoco", "CLEAVE_MUJOCO")
 
 
 def find_program(*targets, about, check=lambda program: None):
@@ -43,6 +45,14 @@ def _build(targets):
     if subprocess.run([ROOT / "scripts" / "setup", "--preset", "release", *chosen], check=False).returncode != 0:
         raise AlreadyTold
     return ROOT / "build" / "release" / "cleave"
+
+
+def find_peer_program(name, variable):
+    """Path of PEERS or MUJOCO: what the variable names, or what was built; nothing is built."""
+    path = pathlib.Path(os.environ.get(variable, ROOT / "build" / "peers" / name))
+    if not os.access(path, os.X_OK):
+        raise ResultError(f"{path} cannot be run; scripts/setup --preset peers --target {name} builds it")
+    return path.resolve()
 
 
 def openblas_environment():
