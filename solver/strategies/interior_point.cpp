@@ -11,12 +11,14 @@
 //
 // Under Coulomb's law every direction is that of the law (coulomb_shift.h). The problem is then not convex, and the iteration may
 // stall where the Newton method of the end does not: that is tried before the first iteration, from the impulses of the step
-// before, and again where iterations make no progress. Where all of it fails, status and residual say so.
+// before, and again where iterations make no progress; the method of alart_curnier.h comes last. Where all of it fails, status and
+// residual say so.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "solver/strategies/alart_curnier.h"
 #include "solver/strategies/cone_newton.h"
 #include "solver/strategies/interior_constants.h"
 #include "solver/strategies/interior_iterate.h"
@@ -61,7 +63,8 @@ class InteriorPoint : public Strategy {
   InteriorConstants constants_;
   InteriorIterate iterate_;
   ConeNewton newton_;
-  std::vector<double> kept_impulse_, present_impulse_;
+  AlartCurnier last_;
+  std::vector<double> kept_impulse_, present_impulse_, warm_impulse_;
   std::vector<double> law_impulse_;  // of the attempts under Coulomb's law, those of the least residual
   double least_law_residual_ = 0;
   double last_polish_ = 0;  // the error of the last attempt at the end
@@ -182,6 +185,7 @@ double InteriorPoint::first_polish(double least_compliance) const {
 void InteriorPoint::begin(SolveState& state) {
   const double least = state.step->least_relative_compliance();
   has_coulomb_ = state.step->set().has_coulomb();
+  if (has_coulomb_) warm_impulse_ = state.impulse;
   const double first = has_coulomb_                        ? kFirstLawPolish
                        : state.step->set().cones().empty() ? first_polish(least)
                                                            : ConeNewton::first_residual(least);
@@ -236,11 +240,12 @@ bool InteriorPoint::run(SolveState& state) {
   return end(state);
 }
 
-// The best iterate, or what an attempt under Coulomb's law came nearer with.
+// The best iterate, or what an attempt under Coulomb's law came nearer with, or comes with now.
 bool InteriorPoint::end(SolveState& state) {
   iterate_.restore(state);
   if (least_law_residual_ < state.residual()) state.load(law_impulse_);
-  return state.residual() <= state.step->exact_limit_m_per_s();
+  if (state.residual() <= state.step->exact_limit_m_per_s()) return true;
+  return has_coulomb_ && last_.run(state, warm_impulse_);
 }
 
 }  // namespace

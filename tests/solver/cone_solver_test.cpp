@@ -11,6 +11,7 @@
 
 #include "solver/cone.h"
 #include "solver/registry.h"
+#include "solver/strategies/alart_curnier.h"
 #include "solver/strategies/cone_barrier.h"
 #include "solver/strategies/cone_newton.h"
 #include "solver/strategies/interior_iterate.h"
@@ -266,6 +267,29 @@ TEST_P(ConeSolverTest, NewtonOfCoulombsLawComesFromFurtherAway) {
     }
   }
   EXPECT_LE(lost, kMostLost);
+}
+
+// By itself, from zero impulses, and honest where it does not get there.
+TEST_P(ConeSolverTest, AlartAndCurniersMethodSolvesTheLaw) {
+  for (const double cfm : {1e-2, 1e-4, 1e-8}) {
+    for (int seed = 0; seed < 3; ++seed) {
+      const StepProblem problem = make_cone_pile(seed, cfm, ContactSet::coulomb);
+      StateOf of(problem, GetParam());
+      AlartCurnier method;
+      const bool solved = method.run(of.state, std::vector<double>(problem.row_count(), 0.0));
+      EXPECT_EQ(solved, of.state.residual() <= of.state.step->exact_limit_m_per_s());
+      EXPECT_TRUE(solved || cfm < 1e-4) << "cfm " << cfm << ", seed " << seed;
+    }
+  }
+}
+
+TEST_P(ConeSolverTest, AlartAndCurniersMethodLeavesOtherConesAlone) {
+  const StepProblem problem = make_cone_pile(0, 1e-4, ContactSet::cone);
+  StateOf of(problem, GetParam());
+  const std::vector<double> before = of.state.impulse;
+  EXPECT_FALSE(AlartCurnier().run(of.state, before));
+  EXPECT_EQ(of.state.impulse, before);
+  EXPECT_EQ(of.summary.factorizations, 0);
 }
 
 // What it cannot solve it leaves no worse, and says how good it is.
