@@ -14,9 +14,10 @@ using Eigen::Vector3d;
 
 // Of 4500 to 6300 rows none of three steps was solved, in seconds.
 constexpr int kMostRows = 2000;
-// On 29 steps of chains and piles that nothing else had solved, 21 were after so many steps from zero and 3 more after as many from
-// the step before; memories of 3 and 12 energies solved fewer.
-constexpr int kMostSteps = 200;
+// Two steps take about as long as an iteration of the interior point and its back-substitutions. On 29 steps of chains and piles
+// that nothing else had solved, 21 were in twice a hundred from zero and 3 more in as many from the step before; memories of 3 and 12
+// energies solved fewer.
+constexpr int kStepsAnIteration = 2;
 constexpr int kMostHalvings = 12;
 constexpr std::size_t kRememberedEnergies = 5;
 constexpr double kLeastFall = 2e-4;  // of the energy, in units of the step's length
@@ -217,13 +218,14 @@ double AlartCurnier::take_step(SolveState& state, double energy_limit) {
 }
 
 bool AlartCurnier::attempt(SolveState& state, std::span<const double> start) {
+  const int most = kStepsAnIteration * state.options.max_iterations;
   load(state, start);
   energies_.assign(1, find_error(state));
-  for (int k = 0; k <= kMostSteps; ++k) {
+  for (int k = 0; k <= most; ++k) {
     const double residual = state.residual();
     if (residual < best_residual_) best_residual_ = residual, best_impulse_ = state.impulse;
     if (residual <= state.options.target_m_per_s * state.step->velocity_scale()) return true;
-    if (k == kMostSteps || !factor(state)) break;
+    if (k == most || !factor(state)) break;
     ++state.summary->iterations;
     step_.assign(rho_.size(), 0.0);
     rest_ = error_;
