@@ -12,7 +12,7 @@
 //
 // Eliminating dlambda leaves (M + J^T E J) dv = -J^T g with E = G^-1 P' rho, g = G^-1 F, G = I - P' + P' rho C, a sparse
 // matrix of body blocks for LU. Steps are halved until the energy sum F^2 / rho falls below the greatest of the last few, so
-// that it may rise in between: where it must fall in every step the method stalls on most of the steps that it solves otherwise.
+// that it may rise in between.
 //
 // A factorisation takes several times as long as a kernel's, and a hundred may be needed, so it comes after all else.
 // Sources: Alart and Curnier, "A mixed formulation for frictional contact problems prone to Newton like solution methods",
@@ -40,27 +40,39 @@ class AlartCurnier {
  private:
   using Matrix = Eigen::SparseMatrix<double>;
 
+  // The rows of a contact, or another row by itself. Vectors of a block have three entries, zero beyond its rows.
+  struct Block {
+    Eigen::Vector3d load(std::span<const double> x) const;
+    void store(const Eigen::Vector3d& value, std::span<double> x) const;
+    Eigen::Vector3d aim(const SolveState& state) const;  // lambda - rho w
+    Eigen::Vector3d project(const StepProblem& problem, const Eigen::Vector3d& y) const;
+    Eigen::Matrix3d differentiate(const StepProblem& problem, const Eigen::Vector3d& y) const;
+    void linearize(const SolveState& state);
+
+    int first_row, row_count;
+    const FrictionCone* cone;  // nullptr: no contact
+    Eigen::Vector3d rho;
+    Eigen::Matrix3d derivative, g_inverse, e;  // P', G^-1, E
+  };
+
   bool attempt(SolveState& state, std::span<const double> start);
   void load(SolveState& state, std::span<const double> impulse) const;
-  void choose_rho(const SolveState& state);
+  void list_blocks(const SolveState& state);
   double find_error(const SolveState& state);  // F and the energy
-  void linearize(const SolveState& state);
-  void add_block(const StepProblem& problem, int first_row, int rows, const Eigen::Matrix3d& e);
+  void assemble(const SolveState& state);
+  void add_block(const StepProblem& problem, const Block& block);
   bool factor(SolveState& state);
   void find_step(const SolveState& state);
   void correct_step(const SolveState& state);
+  double move(SolveState& state, double length);
   double take_step(SolveState& state, double energy_limit);
 
-  std::vector<double> rho_, error_;             // (m) rho, F
-  std::vector<Eigen::Matrix3d> e_, g_inverse_;  // of the rows' blocks: a contact, or a row in the first entry
-  std::vector<Eigen::Matrix3d> derivative_;     // P'
-  std::vector<double> step_, rest_, impulse_before_;  // (m) dlambda
+  std::vector<Block> blocks_;
+  std::vector<double> error_;                         // (m) F
+  std::vector<double> step_, rest_, impulse_before_;  // (m) dlambda; what a step is to remove of F
   std::vector<double> step_velocity_, row_velocity_;  // (n, 6) M^-1 J^T dlambda; (m) J of it
   std::vector<double> best_impulse_;
-  double best_residual_ = 0, scale_ = 1;
-  std::vector<double> copy_;
-  std::vector<int> block_first_, block_rows_;    // first row and number of rows of every block
-  std::vector<const FrictionCone*> block_cone_;  // nullptr: another row
+  double best_residual_ = 0;
   std::vector<Eigen::Triplet<double>> triplets_;
   Matrix matrix_;
   Eigen::SparseLU<Matrix> lu_;
