@@ -23,7 +23,6 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "harness/base/stopwatch.h"
@@ -42,7 +41,8 @@ enum class Storage { triplets, blocks };
 // A problem of Siconos, in memory of its own kind: its functions free what they were given with free().
 class LocalForm {
  public:
-  LocalForm(ContactForm form, Storage storage) : form_(std::move(form)) {
+  // Throws as ContactForm does.
+  LocalForm(const StepProblem& step, Storage storage) : form_(step) {
     const int contacts = form_.contact_count(), m = kRowsOfContact * contacts;
     matrix_ = NM_create(NM_SPARSE, m, m);
     NM_triplet_alloc(matrix_, m);
@@ -66,6 +66,7 @@ class LocalForm {
   LocalForm& operator=(const LocalForm&) = delete;
 
   FrictionContactProblem* get() { return &problem_; }
+  const ContactForm& contacts() const { return form_; }
   double norm_of_q() const {
     double sum = 0;
     for (const double value : form_.free_slack) sum += value * value;
@@ -122,26 +123,24 @@ void run_to_tolerance(int solver, LocalForm& form, const Settings& settings, std
 PeerAnswer solve(int solver, Storage storage, const StepProblem& step, std::span<const double> start,
                  const Settings& settings) {
   PeerAnswer answer;
-  std::optional<ContactForm> contacts;
+  std::optional<LocalForm> form;
   try {
-    contacts.emplace(step);
+    form.emplace(step, storage);
   } catch (const std::invalid_argument& refusal) {
     answer.message = refusal.what();
     return answer;
   }
-  LocalForm form(*contacts, storage);
-  std::vector<double> reaction = contacts->contact_impulse(start);
-  run_to_tolerance(solver, form, settings, reaction, answer);
-  answer.impulse = contacts->whole_impulse(reaction);
+  std::vector<double> reaction = form->contacts().contact_impulse(start);
+  run_to_tolerance(solver, *form, settings, reaction, answer);
+  answer.impulse = form->contacts().whole_impulse(reaction);
   return answer;
 }
 
 }  // namespace
 
 double siconos_error(const StepProblem& problem, std::span<const double> impulse) {
-  const ContactForm contacts(problem);
-  LocalForm form(contacts, Storage::triplets);
-  return error_over_q(form, contacts.contact_impulse(impulse));
+  LocalForm form(problem, Storage::triplets);
+  return error_over_q(form, form.contacts().contact_impulse(impulse));
 }
 
 PeerAnswer solve_siconos_nsgs(const StepProblem& problem, std::span<const double> start,
