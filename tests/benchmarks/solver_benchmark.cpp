@@ -4,7 +4,7 @@
 //   solver_benchmark FILE... [Google Benchmark options]
 //
 // Rows, by file (named by its directory and stem):
-//   exact            a whole solve; counters residual_m_per_s, factorizations, within_limit
+//   exact            t_s of a whole solve; counters residual_m_per_s, factorizations, within_limit
 //   pgs/N            N sweeps of projected Gauss-Seidel, preparation included; ns_per_row_sweep
 //   cholmod/KIND     one numeric factorisation of H by CHOLMOD, KIND supernodal or simplicial
 //   factor, assemble our own, of the same H; gflop_per_s counts CHOLMOD's operations of its best ordering

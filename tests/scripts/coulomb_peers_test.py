@@ -13,29 +13,25 @@ from cleave_scripts.documents.stored import Stored
 from cleave_scripts.measurements.coulomb_beside_siconos import CFMS, COLUMNS, MUS, STEPS, THEIRS, beyond, beyond_table, counts, scene_table
 
 STAND_IN = NOTES_ITS_CALL + """import coulomb_peers_test
-sys.exit(coulomb_peers_test.answer(words))
+sys.exit(coulomb_peers_test.answer(words, given))
 """
 ERRORS = {"exact": 1e-12, THEIRS[0]: 1e-6, THEIRS[1]: 1e-11}
 
 
-def answer(words):
+def answer(words, given):
     """As the programs do: Gauss-Seidel does not end, the first step has no contacts, the second times out in Newton."""
-    from synthetic import write_steps
-    given = dict(zip(words, words[1:]))
+    from synthetic import touch_recorded, write_steps
     if words[0] == "siconos-error":
         print("file,solver,rows,residual_m_per_s,siconos_error,velocity_difference_m_per_s")
         for solver, error in ERRORS.items():
             if not (solver == THEIRS[1] and "step000200" in words[1] and "silo" in words[1]):
                 print(f"{words[1]},{solver},12,{error},{error},{error}")
         return 0
-    out = pathlib.Path(given["--out"])
-    out.mkdir(parents=True, exist_ok=True)
     if words[0] == "record":
-        for step in given["--at"].split(","):
-            (out / f"{given['--scene']}_step{int(step):06}.h5").touch()
+        touch_recorded(given)
         return 2
     files = [pathlib.Path(word) for word in words if word.endswith(".h5")]
-    write_steps(out, [dict(scene=file.name.partition("_step")[0], step=int(file.stem[-6:]), bodies=2, rows=12, rows_bilateral=0, solver=solver,
+    write_steps(given["--out"], [dict(scene=file.name.partition("_step")[0], step=int(file.stem[-6:]), bodies=2, rows=12, rows_bilateral=0, solver=solver,
                            contacts=0 if "silo_step000060" in file.name else 4, iterations=7, residual_m_per_s=1e-12, status="ok")
                       for file in files for solver in given["--solver"].split(",")])
     return 2

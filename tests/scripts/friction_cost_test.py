@@ -39,13 +39,11 @@ def sliding(impulse, velocity, tangents=2):
 
 def answer(words, given):
     """As the program does. Under Coulomb's law the friction of steps up to 9 is that of the box; two steps have no row."""
-    from synthetic import write_steps
+    from synthetic import touch_recorded, write_steps
+    if words[0] == "record":
+        return touch_recorded(given)
     out = pathlib.Path(given["--out"])
     out.mkdir(parents=True, exist_ok=True)
-    if words[0] == "record":
-        for step in given["--at"].split(","):
-            (out / f"{given['--scene']}_step{int(step):06}.h5").touch()
-        return
     files = [pathlib.Path(word) for word in words if word.endswith(".h5")]
     model, cold = given["--friction"], int("--cold" in words)
     rows = []

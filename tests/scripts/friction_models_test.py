@@ -15,7 +15,7 @@ from cleave_scripts.measurements.friction_of_models import IN_A_STEP, MODELS, MO
 from cleave_scripts.results.paper import SCENES
 
 STAND_IN = NOTES_ITS_CALL + """import friction_models_test
-sys.exit(friction_models_test.answer(words))
+sys.exit(friction_models_test.answer(words, given))
 """
 SPEED = {"box": 1.0, "cone": 3.0, "coulomb": 2.0}  # of the first of two bodies, by model
 UNSOLVED = "coulomb"
@@ -31,16 +31,14 @@ def write_solution(path, speed):
         file["solution/-+-+exact/velocity"] = numpy.array([[speed, 0, 0, 9, 9, 9], [0, 2.0, 0, 0, 0, 0]])
 
 
-def answer(words):
+def answer(words, given):
     """As the program does: two bodies, of which one moves away by a metre a step."""
-    from synthetic import write_manifest, write_steps
-    given = dict(zip(words, words[1:]))
+    from synthetic import touch_recorded, write_manifest, write_steps
+    if words[0] == "record":
+        touch_recorded(given)
+        return 0
     out = pathlib.Path(given["--out"])
     out.mkdir(parents=True, exist_ok=True)
-    if words[0] == "record":
-        for step in given["--at"].split(","):
-            (out / f"{given['--scene']}_step{int(step):06}.h5").touch()
-        return 0
     model = given["--friction"]
     common = dict(bodies=2, rows=6, status="ok", status_reason="-", factorizations=4, seed=1)
     if words[0] == "replay":

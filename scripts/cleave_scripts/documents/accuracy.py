@@ -15,10 +15,6 @@ MODEL = ("model_savings.csv", "scripts/model_savings")
 SHOWN = (1e-2, 1e-4, 1e-6, 1e-8)
 
 
-def _power(value):
-    return f"{value:.0e}".replace("e-0", "e-")
-
-
 def _against(problem, limit):
     """The fastest solver that iterates, as a multiple of exact."""
     method, time_ms = problem.fastest(limit, problem.iterative)
@@ -35,12 +31,12 @@ def time_to_accuracy(stored):
         crossover = problem.crossover()
         lines.append([f"{scene.replace('_', ' ')}, {bodies} bodies, {problem.rows} rows, cfm {float(cfm):g}",
                       text.number(problem.time_ms(EXACT, SHOWN[-1])), *(_against(problem, limit) for limit in SHOWN),
-                      _power(crossover) if crossover else "none"])
+                      text.power(crossover) if crossover else "none"])
     return (f"t_s of `{EXACT}`, ms, one thread, on recorded steps; then the fastest of the solvers that iterate, told to stop at a residual (m/s "
             "over max(1, largest free velocity)), as a multiple of that: below 1 it is faster, *never* means that none got there in the sweeps "
             f"it was given; last the largest residual from which on down `{EXACT}` is faster than all of them "
             f"(`{COMMAND}`; {stored.origin(TIMES[0])}):\n\n" +
-            text.table(["", f"`{EXACT}`, ms", *map(_power, SHOWN), "`exact` faster from"], lines))
+            text.table(["", f"`{EXACT}`, ms", *map(text.power, SHOWN), "`exact` faster from"], lines))
 
 
 def sweep_cost(stored):
@@ -86,7 +82,7 @@ def iterative_partitions(stored):
     agreed = ", ".join(f"`{one}` and `{other}` {parts_of.ranks_agree(compared, one, other):.2f}"
                        for place, one in enumerate(solvers) for other in solvers[place + 1:])
     return (f"t_pr + t_s of a partition against the least of all partitions, geometric mean over steps of the scenes at cfm {float(parts_of.CFM):g}; in "
-            f"brackets the same of sweeps. Solvers that iterate stop at {_power(parts_of.LIMIT)} m/s (`{COMMAND}`; {stored.origin(PARTS[0])}):\n\n" +
+            f"brackets the same of sweeps. Solvers that iterate stop at {text.power(parts_of.LIMIT)} m/s (`{COMMAND}`; {stored.origin(PARTS[0])}):\n\n" +
             text.table(["", *(f"`{solver}`" for solver in solvers)], lines) +
             f"\n\nRank correlation of the partitions' times between solvers: {agreed}.")
 

@@ -3,6 +3,7 @@ import math
 
 from cleave_scripts.figures import looks, style
 from cleave_scripts.measurements.accuracy import EXACT, LIMITS, failures, profile
+from cleave_scripts.table import text
 
 PROFILED = (1e-2, 1e-4, 1e-6, 1e-8)
 WIDEST = 1000  # times the fastest, where a profile ends
@@ -15,7 +16,7 @@ def _methods(found):
 
 
 def _power(axis):
-    axis.set_major_formatter(style.matplotlib.ticker.FuncFormatter(lambda value, _: f"{value:.0e}".replace("e-0", "e-")))
+    axis.set_major_formatter(style.matplotlib.ticker.FuncFormatter(lambda value, _: text.power(value)))
 
 
 def draw_times(found):
@@ -55,7 +56,7 @@ def draw_profiles(found):
             ax.step([1, *inside, WIDEST], [0, *shares, max(shares, default=0)], where="post", color=looked[method]["color"],
                     linewidth=looked[method]["linewidth"])
         ax.set(xscale="log", xlabel="times the fastest", ylabel="share of the problems", ylim=(-0.03, 1.03))
-        ax.set_title(f"residual {limit:.0e} m/s".replace("e-0", "e-"))
+        ax.set_title(f"residual {text.power(limit)} m/s")
     texts = {method: f"{method} (never: {'/'.join(counts)})" for method, counts in failed.items()}
     style.legend_above(figure, _lines(looked, texts), columns=2)
     return figure

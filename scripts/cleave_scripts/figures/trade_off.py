@@ -10,6 +10,7 @@ from cleave_scripts.figures.solver_labels import count_text, families, full_name
 from cleave_scripts.figures.solver_groups import MOST_PANELS, groups, of_many_solvers, shared_rows
 from cleave_scripts.figures.tree import NoData
 from cleave_scripts.results.steps import EXACT_LIMIT
+from cleave_scripts.table import text
 
 FLOOR = 1e-17  # where a residual of exactly 0 is drawn
 CLUSTER_PX = 12  # points as close as that are named together
@@ -61,8 +62,8 @@ def draw(data):
         "of a panel have in common, one a solver and combination, lines quartiles. Coloured lines join the "
         "sweeps or iterations of one solver, with their numbers; the names beside a cluster stand fastest "
         "first; the broad grey staircase joins what nothing beats in both. "
-        f"Dashed: {_power(EXACT_LIMIT)} m/s, what exact means. Hollow: not accepted by the "
-        f"judge in every step. A residual of 0 is drawn at {_power(FLOOR)}. {_left_out(found)}" +
+        f"Dashed: {text.power(EXACT_LIMIT)} m/s, what exact means. Hollow: not accepted by the "
+        f"judge in every step. A residual of 0 is drawn at {text.power(FLOOR)}. {_left_out(found)}" +
         provenance({name: parts for name, parts, _ in shown}))
 
 
@@ -73,10 +74,6 @@ def _left_out(found):
         labels = shared_rows(parts)[1]
         texts += [f"No step of {name} in common with the others: {', '.join(labels)}. "] if labels else []
     return "".join(texts)
-
-
-def _power(value):
-    return f"{value:.0e}".replace("e-0", "e-")
 
 
 def _layout(counts):

@@ -130,11 +130,6 @@ def scene_table(rows):
     return text.table(SCENE_HEADER, _scene_lines(rows))
 
 
-def _plain(limit):
-    """1e-8"""
-    return f"{limit:.0e}".replace("e-0", "e-")
-
-
 def counts(rows):
     """What was found against the limits, in a few sentences."""
     of_problems = problems(rows)
@@ -149,11 +144,11 @@ def counts(rows):
     def within(of, column, limit):
         return f"{sum(float(row[column]) <= limit for row in of)} of {len(of)}"
 
-    return (f"{len(first)} problems. Solved by us: {len(ours)}; of these Siconos's error is at most {_plain(OUR_ERROR_LIMIT)} on "
+    return (f"{len(first)} problems. Solved by us: {len(ours)}; of these Siconos's error is at most {text.power(OUR_ERROR_LIMIT)} on "
             f"{within(ours, 'siconos_error', OUR_ERROR_LIMIT)}, of all on {within(first, 'siconos_error', OUR_ERROR_LIMIT)}. Siconos's solvers came "
-            f"to {_plain(TOLERANCE)} {len(theirs)} of {len(rows)} times; of these our residual is at most {_plain(THEIR_RESIDUAL_LIMIT_M_PER_S)} m/s on "
+            f"to {text.power(TOLERANCE)} {len(theirs)} of {len(rows)} times; of these our residual is at most {text.power(THEIR_RESIDUAL_LIMIT_M_PER_S)} m/s on "
             f"{within(theirs, 'peer_residual_m_per_s', THEIR_RESIDUAL_LIMIT_M_PER_S)}. Where both were solved, no velocity differs by more than "
-            f"{_plain(VELOCITY_LIMIT_M_PER_S)} m/s or rad/s on {within(compared, 'velocity_difference_m_per_s', VELOCITY_LIMIT_M_PER_S)} with mu <= {MU_LIMIT} and on "
+            f"{text.power(VELOCITY_LIMIT_M_PER_S)} m/s or rad/s on {within(compared, 'velocity_difference_m_per_s', VELOCITY_LIMIT_M_PER_S)} with mu <= {MU_LIMIT} and on "
             f"{within(rough, 'velocity_difference_m_per_s', VELOCITY_LIMIT_M_PER_S)} with a larger one. Solved by a solver of Siconos and not by us: "
             f"{only_theirs} problems; by us alone: {only_ours}.")
 

@@ -74,11 +74,6 @@ def law_costs(rows):
     return _costs(rows, lambda row: row["scene"], cold=0)
 
 
-def _power(value):
-    """'1e-4'"""
-    return f"{value:.0e}".replace("e-0", "e-")
-
-
 def _verdict(holds):
     return "yes" if holds else "no"
 
@@ -88,7 +83,7 @@ def _share(within, steps):
 
 
 def _cone_line(rocks, cfm, cost):
-    return [rocks, _power(cfm), cost.steps, *(text.number(cost.t_s_ms[model]) for model in (BOX, CONE)),
+    return [rocks, text.power(cfm), cost.steps, *(text.number(cost.t_s_ms[model]) for model in (BOX, CONE)),
             f"{cost.median_ratio:.2f}", f"{max(cost.ratios):.2f}", *(cost.iterations[model] for model in (BOX, CONE)),
             *(cost.unsolved[model] for model in (BOX, CONE)), _verdict(cost.cone_holds())]
 
@@ -101,7 +96,7 @@ def _law_line(scene, cost):
 
 CONE_HEADER = ("rocks", "cfm", "steps", "box, ms", "cone, ms", "cone / box, median", "most", "most iterations, box", "cone", "above the limit, box",
                "cone", "holds")
-LAW_HEADER = ("scene", "steps", "box, ms", "Coulomb, ms", "Coulomb / box, of sums", "median", f"within {_power(LAW_MISMATCH)} of the law, box",
+LAW_HEADER = ("scene", "steps", "box, ms", "Coulomb, ms", "Coulomb / box, of sums", "median", f"within {text.power(LAW_MISMATCH)} of the law, box",
               "Coulomb", "above the limit, box", "Coulomb", "holds")
 
 
@@ -120,5 +115,5 @@ def markdown(rows):
                text.table(CONE_HEADER, [_cone_line(*key, cost) for key, cost in cones.items()]))
     if laws:
         yield (f"{sum(cost.law_holds() for cost in laws.values())} of {len(laws)} hold: at least {text.percent(LAW_SHARE)} of the steps are within "
-               f"{_power(LAW_MISMATCH)} of Coulomb's law, at no more than {LAW_RATIO} times the time of the box, of sums and in the median.\n\n" +
+               f"{text.power(LAW_MISMATCH)} of Coulomb's law, at no more than {LAW_RATIO} times the time of the box, of sums and in the median.\n\n" +
                text.table(LAW_HEADER, [_law_line(scene, cost) for scene, cost in laws.items()]))

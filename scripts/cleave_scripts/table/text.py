@@ -15,6 +15,11 @@ def number(value, digits=3):
     return f"{value:.{max(0, decimals)}f}"
 
 
+def power(value):
+    """A limit or a decade: 1e-8."""
+    return f"{value:.0e}".replace("e-0", "e-")
+
+
 def percent(share):
     return "-" if math.isnan(share) else f"{round(100 * share)} %"
 
