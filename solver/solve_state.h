@@ -95,8 +95,8 @@ struct SolveState {
   void flip(int row);
 
   // Light work on rows in ranges that depend on their number alone, one task each: task(first, last, range). Few rows are
-  // one range: to hand out a part of them would take longer than to do it. On 200 rocks (2115 rows) ranges of 384 rows save
-  // two threads a tenth of a solve, mostly because what a thread wrote is still with it.
+  // one range: to hand out a part of them would take longer than to do it. On five steps of 200 rocks two threads took from
+  // 14 % less to 7 % more time with ranges of 384 rows than with one of all rows, 4 % less in the median.
   static constexpr int kFewRows = 1024, kLeastRowsOfARange = 384, kMostRowsOfARange = 1024, kRanges = 6;
   int rows_of_a_range() const {
     const int rows = step->row_count();
