@@ -2,91 +2,84 @@
 
 #include <immintrin.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace cleave {
 namespace {
 
-constexpr int kSideBySide = 6;  // groups that one core works on at a time
-
-// A group of rows on its way: the velocities of its two bodies stay in registers.
-struct Traveller {
-  const SlabRow* row;
-  float* impulse;
-  int rows_left;
-  __m256 u_a, u_b;
-};
-
-inline void load(const SlabArrays& arrays, int group, Traveller& t) {
-  const RowGroup& g = arrays.groups[group];
-  t.u_a = _mm256_load_ps(arrays.bodies[arrays.place_of_body[g.body_a]].velocity);
-  t.u_b =
-      _mm256_load_ps(arrays.bodies[g.body_b < 0 ? arrays.still : arrays.place_of_body[g.body_b]].velocity);
-  t.row = arrays.rows + arrays.place_of_group[group];
-  t.impulse = arrays.impulse + arrays.place_of_group[group];
-  t.rows_left = g.row_count;
-}
-
-inline void store(const SlabArrays& arrays, int group, const Traveller& t) {
-  const RowGroup& g = arrays.groups[group];
-  _mm256_store_ps(arrays.bodies[arrays.place_of_body[g.body_a]].velocity, t.u_a);
-  if (g.body_b >= 0) _mm256_store_ps(arrays.bodies[arrays.place_of_body[g.body_b]].velocity, t.u_b);
-}
-
-inline float sum_of(__m256 x) {
-  const __m128 four = _mm_add_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
-  const __m128 two = _mm_add_ps(four, _mm_movehl_ps(four, four));
-  return _mm_cvtss_f32(_mm_add_ss(two, _mm_movehdup_ps(two)));
-}
-
-// The next row of each. Every traveller's arithmetic is its own: it does not matter which others are beside it.
-template <int Count>
-inline void advance(Traveller* travellers) {
-  float change[Count];
-  for (int i = 0; i < Count; ++i) {
-    const Traveller& t = travellers[i];
-    const SlabRow& row = *t.row;
-    const float jv = sum_of(_mm256_fmadd_ps(_mm256_load_ps(row.jacobian_b), t.u_b,
-                                            _mm256_mul_ps(_mm256_load_ps(row.jacobian_a), t.u_a)));
-    const float old = *t.impulse;
-    const float next =
-        std::min(std::max(std::fma(old, row.kept(), row.push()) - jv, row.lower()), row.upper());
-    change[i] = next - old;
-    *t.impulse = next;
+// Eight vectors of eight numbers to eight of the first numbers, of the second, ...
+inline void transpose(__m256* v) {
+  __m256 pairs[8], fours[8];
+  for (int i = 0; i < 4; ++i) {
+    pairs[2 * i] = _mm256_unpacklo_ps(v[2 * i], v[2 * i + 1]);
+    pairs[2 * i + 1] = _mm256_unpackhi_ps(v[2 * i], v[2 * i + 1]);
   }
-  for (int i = 0; i < Count; ++i) {
-    Traveller& t = travellers[i];
-    const __m256 step = _mm256_set1_ps(change[i]);
-    t.u_a = _mm256_fmadd_ps(_mm256_load_ps(t.row->mass_jacobian_a), step, t.u_a);
-    t.u_b = _mm256_fmadd_ps(_mm256_load_ps(t.row->mass_jacobian_b), step, t.u_b);
-    ++t.row, ++t.impulse, --t.rows_left;
+  for (int i = 0; i < 2; ++i) {
+    for (int k = 0; k < 2; ++k) {
+      fours[4 * i + 2 * k] = _mm256_shuffle_ps(pairs[4 * i + k], pairs[4 * i + 2 + k], 0x44);
+      fours[4 * i + 2 * k + 1] = _mm256_shuffle_ps(pairs[4 * i + k], pairs[4 * i + 2 + k], 0xEE);
+    }
+  }
+  for (int i = 0; i < 4; ++i) {
+    v[i] = _mm256_permute2f128_ps(fours[i], fours[4 + i], 0x20);
+    v[4 + i] = _mm256_permute2f128_ps(fours[i], fours[4 + i], 0x31);
   }
 }
 
-// `Count` groups side by side, or as many as there are left.
-template <int Count>
-void visit_set(const SlabArrays& arrays, std::span<const int> which) {
-  if constexpr (Count > 1) {
-    if (static_cast<int>(which.size()) < Count) return visit_set<Count - 1>(arrays, which);
+// u[c]: the c-th number of the velocity in every lane, 0 <= c < 6. Kept out of visit_octet(), where what is in registers
+// would go to memory for it.
+[[gnu::noinline]] void load(const SlabBody* bodies, const int* places, __m256* u) {
+  __m256 v[8];
+  for (int i = 0; i < 8; ++i) v[i] = _mm256_load_ps(bodies[places[i]].velocity);
+  transpose(v);
+  for (int c = 0; c < 6; ++c) u[c] = v[c];
+}
+
+[[gnu::noinline]] void store(SlabBody* bodies, const int* places, const __m256* u) {
+  __m256 v[8] = {u[0], u[1], u[2], u[3], u[4], u[5], _mm256_setzero_ps(), _mm256_setzero_ps()};
+  transpose(v);
+  for (int i = 0; i < 8; ++i) _mm256_store_ps(bodies[places[i]].velocity, v[i]);
+}
+
+// kept lambda + push - J v / d, in four sums that do not wait for each other.
+inline __m256 free_impulse(const OctetRow& row, const __m256* u) {
+  __m256 sum[4];
+  sum[0] = _mm256_fmadd_ps(_mm256_load_ps(row.impulse), _mm256_load_ps(row.kept), _mm256_load_ps(row.push));
+  sum[0] = _mm256_fnmadd_ps(_mm256_load_ps(row.jacobian[0]), u[0], sum[0]);
+#pragma GCC unroll 3
+  for (int i = 1; i < 4; ++i) sum[i] = _mm256_mul_ps(_mm256_load_ps(row.jacobian[i]), u[i]);
+#pragma GCC unroll 2
+  for (int c = 4; c < 12; c += 4) {
+    sum[0] = _mm256_fnmadd_ps(_mm256_load_ps(row.jacobian[c]), u[c], sum[0]);
+#pragma GCC unroll 3
+    for (int i = 1; i < 4; ++i)
+      sum[i] = _mm256_fmadd_ps(_mm256_load_ps(row.jacobian[c + i]), u[c + i], sum[i]);
   }
-  Traveller travellers[Count];
-  for (int i = 0; i < Count; ++i) load(arrays, which[i], travellers[i]);
-  // Longer ones come first, so the last of them has the fewest rows.
-  while (travellers[Count - 1].rows_left > 0) advance<Count>(travellers);
-  for (int i = 0; i < Count; ++i) {
-    while (travellers[i].rows_left > 0) advance<1>(travellers + i);
-    store(arrays, which[i], travellers[i]);
-  }
+  return _mm256_sub_ps(_mm256_sub_ps(sum[0], sum[1]), _mm256_add_ps(sum[2], sum[3]));
+}
+
+inline void visit_row(OctetRow& row, __m256* u) {
+  const __m256 next = _mm256_min_ps(_mm256_max_ps(free_impulse(row, u), _mm256_load_ps(row.lower)),
+                                    _mm256_load_ps(row.upper));
+  const __m256 change = _mm256_sub_ps(next, _mm256_load_ps(row.impulse));
+  _mm256_store_ps(row.impulse, next);
+#pragma GCC unroll 12
+  for (int c = 0; c < 12; ++c) u[c] = _mm256_fmadd_ps(_mm256_load_ps(row.mass_jacobian[c]), change, u[c]);
 }
 
 }  // namespace
 
-void visit_groups(const SlabArrays& arrays, std::span<const int> which) {
-  for (std::size_t begin = 0; begin < which.size(); begin += kSideBySide) {
-    const std::size_t count = std::min<std::size_t>(kSideBySide, which.size() - begin);
-    visit_set<kSideBySide>(arrays, which.subspan(begin, count));
-  }
+void visit_octet(const Octet& octet, OctetRow* rows, SlabBody* bodies) {
+  __m256 velocities[12];
+  load(bodies, octet.body_a, velocities);
+  load(bodies, octet.body_b, velocities + 6);
+  __m256 u[12];
+#pragma GCC unroll 12
+  for (int c = 0; c < 12; ++c) u[c] = velocities[c];
+  for (OctetRow *row = rows + octet.first_row, *end = row + octet.row_count; row != end; ++row)
+    visit_row(*row, u);
+#pragma GCC unroll 12
+  for (int c = 0; c < 12; ++c) velocities[c] = u[c];
+  store(bodies, octet.body_a, velocities);
+  store(bodies, octet.body_b, velocities + 6);
 }
 
 }  // namespace cleave

@@ -1,44 +1,33 @@
-// Rows of Gauss-Seidel sweeps as slab_sweeps.h goes through them: in single precision, two cache lines a row.
+// Rows of Gauss-Seidel sweeps as slab_sweeps.h goes through them: eight groups of rows side by side in the lanes of a
+// vector, in single precision.
 #pragma once
-
-#include <span>
-
-#include "solver/prepared_step.h"
 
 namespace cleave {
 
-// All that a sweep needs of a row, in two cache lines; lambda_r - w_r / d = kept lambda_r + push - (J_r / d) v
-// with d = d_r / omega. The numbers of a body are followed by two more: zeros, but in J / d, where a velocity's are zero too.
-struct alignas(64) SlabRow {
-  float jacobian_a[8], jacobian_b[8];  // J_r / d
-  float mass_jacobian_a[8], mass_jacobian_b[8];
+inline constexpr int kOctetLanes = 8;
 
-  float& kept() { return jacobian_a[6]; }
-  float& push() { return jacobian_a[7]; }
-  float& lower() { return jacobian_b[6]; }  // finite, so that its product with zero is zero
-  float& upper() { return jacobian_b[7]; }
-  float kept() const { return jacobian_a[6]; }
-  float push() const { return jacobian_a[7]; }
-  float lower() const { return jacobian_b[6]; }
-  float upper() const { return jacobian_b[7]; }
+// The k-th row of each of eight groups; lambda_r - w_r / d = kept lambda_r + push - (J_r / d) v with d = d_r / omega.
+// Nothing moves in the lane of a group that has no k-th row.
+struct alignas(64) OctetRow {
+  float jacobian[12][kOctetLanes] = {};       // J_r / d, six numbers of body a and six of b
+  float mass_jacobian[12][kOctetLanes] = {};  // M^-1 J_r^T
+  float kept[kOctetLanes] = {}, push[kOctetLanes] = {};
+  float lower[kOctetLanes] = {}, upper[kOctetLanes] = {};
+  float impulse[kOctetLanes] = {};
+  signed char side[kOctetLanes] = {};  // at its lower bound, free, at its upper one
 };
 
-struct alignas(64) SlabBody {
-  float velocity[8];  // and two zeros
+// Up to eight groups of rows, no two of them on one body that moves.
+struct Octet {
+  int first_row, row_count;
+  int body_a[kOctetLanes], body_b[kOctetLanes];  // for what does not move, a body that stands still
 };
 
-// Where a sweep finds what it needs; places are those of slab_sweeps.h.
-struct SlabArrays {
-  std::span<const RowGroup> groups;
-  const int *place_of_body, *place_of_group;
-  const SlabRow* rows;  // by place
-  float* impulse;       // by place
-  SlabBody* bodies;     // by place, and one that stands still
-  int still;
+struct alignas(32) SlabBody {
+  float velocity[kOctetLanes] = {};  // and two zeros
 };
 
-// Visits every row of these groups once, in their order. Groups of many rows first, and no two of them on one body:
-// six go side by side.
-void visit_groups(const SlabArrays& arrays, std::span<const int> groups);
+// Visits every row of these groups once, in their order.
+void visit_octet(const Octet& octet, OctetRow* rows, SlabBody* bodies);
 
 }  // namespace cleave

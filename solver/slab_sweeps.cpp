@@ -1,8 +1,8 @@
 #include "solver/slab_sweeps.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
-#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -11,12 +11,65 @@
 namespace cleave {
 namespace {
 
-constexpr int kSlabRows = 600;   // about so many in a slab: five microseconds of work
-constexpr int kWordColors = 64;  // colours in one word of used_colors_
-constexpr double kLastPlace = 1 - 1e-9;
+// Octets that a group may still join, the oldest first. So many at most: of one body in very many groups, each needs an
+// octet of its own.
+class OpenOctets {
+ public:
+  // The first with neither body; -1: none.
+  int find(int body_a, int body_b) const {
+    for (int i = 0; i < count_; ++i)
+      if (!has(i, body_a) && (body_b < 0 || !has(i, body_b))) return i;
+    return -1;
+  }
+  int open(int octet) {
+    if (count_ == kMost) close(0);
+    open_[count_] = {.octet = octet};
+    open_[count_].bodies.fill(-1);
+    return count_++;
+  }
+  int octet(int i) const { return open_[i].octet; }
+  // Returns the lane of the group; one that is full is closed.
+  int add(int i, int body_a, int body_b) {
+    const int lane = open_[i].groups++;
+    open_[i].bodies[lane] = body_a;
+    open_[i].bodies[kOctetLanes + lane] = body_b;
+    if (open_[i].groups == kOctetLanes) close(i);
+    return lane;
+  }
 
-signed char side_of(const SlabRow& row, float impulse) {
-  return static_cast<signed char>(impulse <= row.lower() ? -1 : impulse >= row.upper() ? 1 : 0);
+ private:
+  static constexpr int kMost = 16;
+  struct Open {
+    int octet = 0, groups = 0;
+    std::array<int, 2 * kOctetLanes> bodies{};
+  };
+
+  // All sixteen, which a vector compares at once.
+  bool has(int i, int body) const {
+    int found = 0;
+    for (const int other : open_[i].bodies) found |= other == body;
+    return found != 0;
+  }
+  void close(int i) { std::move(open_.begin() + i + 1, open_.begin() + count_--, open_.begin() + i); }
+
+  std::array<Open, kMost> open_;
+  int count_ = 0;
+};
+
+constexpr Octet empty_octet(int first_row, int row_count) {
+  Octet octet{.first_row = first_row, .row_count = row_count, .body_a = {}, .body_b = {}};
+  std::ranges::fill(octet.body_a, -1);
+  std::ranges::fill(octet.body_b, -1);
+  return octet;
+}
+
+signed char side_of(float impulse, float lower, float upper) {
+  return static_cast<signed char>((impulse >= upper) - (impulse <= lower));
+}
+
+float to_float(double x) {
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return static_cast<float>(std::clamp(x, -kMost, kMost));
 }
 
 }  // namespace
@@ -24,198 +77,96 @@ signed char side_of(const SlabRow& row, float impulse) {
 void SlabSweeps::bind(const PreparedStep& step, ParallelTasks& tasks) {
   assert(step.set().axes().empty());
   step_ = &step;
-  measure_distances(step);
-  cut_slabs(step);
-  color_groups(step);
-  sort_groups(step, tasks);
+  slabs_.cut(step, kMostSweeps);
+  sort_groups(step);
+  tasks.run(slabs_.set_count(), [&](int set) { fill_octets(step, set); });
   assign_places(step);
-  tasks.run(set_count(), [&](int set) { pack_rows(step, set); });
-  build_graph();
+  tasks.run(slabs_.set_count(), [&](int set) { pack_rows(step, set); });
 }
 
-// Breadth first; appends to queue_ the bodies that are reached and have no distance yet. Returns the last of them.
-int SlabSweeps::walk_from(const PreparedStep& step, int start, int distance) {
-  std::size_t next = queue_.size();
-  distance_[start] = distance;
-  for (queue_.push_back(start); next < queue_.size(); ++next) {
-    const int body = queue_[next];
-    for (const int side : step.sides_of_body(body)) {
-      const RowGroup& g = step.groups()[side / 2];
-      const int other = side % 2 == 0 ? g.body_b : g.body_a;
-      if (other < 0 || distance_[other] >= 0) continue;
-      distance_[other] = distance_[body] + 1;
-      queue_.push_back(other);
-    }
-  }
-  return queue_.back();
+void SlabSweeps::sort_groups(const PreparedStep& step) {
+  const int sets = slabs_.set_count(), groups = static_cast<int>(step.groups().size());
+  const auto set_of = [&](int g) { return slabs_.set_of(step.groups()[g]); };
+  sort_into_buckets(groups, sets, set_of, group_first_, groups_);
+  octets_.resize(groups);
+  place_of_group_.resize(groups);
+  octet_count_.resize(sets);
+  row_first_.resize(sets + 1);
+  changed_.resize(sets);
 }
 
-// From a body at the edge: the one that is reached last from the body of lowest number. Islands follow each other.
-void SlabSweeps::measure_distances(const PreparedStep& step) {
-  distance_.assign(step.body_count(), -1);
-  queue_.clear();
-  for (int body = 0, next = 0; body < step.body_count(); ++body) {
-    if (distance_[body] >= 0) continue;
-    const std::size_t island = queue_.size();
-    const int edge = walk_from(step, body, 0);
-    for (std::size_t k = island; k < queue_.size(); ++k) distance_[queue_[k]] = -1;
-    queue_.resize(island);
-    next = distance_[walk_from(step, edge, next)] + 1;
-  }
-}
-
-// At whole distances, so that no pair of bodies reaches over a slab.
-void SlabSweeps::cut_slabs(const PreparedStep& step) {
-  const int most = queue_.empty() ? 0 : distance_[queue_.back()];
-  rows_at_.assign(most + 1, 0);
-  for (const RowGroup& g : step.groups()) rows_at_[distance_[g.body_a]] += g.row_count;
-  const int wanted = std::max(1, step.row_count() / kSlabRows);
-  slab_count_ = 0;
-  long rows = 0;  // so far
-  for (int at = 0; at <= most; ++at) {
-    rows += rows_at_[at];
-    rows_at_[at] = slab_count_;
-    if (rows * wanted >= static_cast<long>(slab_count_ + 1) * step.row_count()) ++slab_count_;
-  }
-  slab_count_ = std::max(slab_count_, 1);
-  slab_of_body_.resize(step.body_count());
-  for (int body = 0; body < step.body_count(); ++body)
-    slab_of_body_[body] = std::min(rows_at_[distance_[body]], slab_count_ - 1);
-}
-
-// Of the colours of its set that neither body has the one with the fewest groups, or a new one. A body in very many
-// groups needs more than a word of colours.
-void SlabSweeps::color_groups(const PreparedStep& step) {
-  std::size_t most = 0;
-  for (int body = 0; body < step.body_count(); ++body) most = std::max(most, step.sides_of_body(body).size());
-  const std::size_t words = (2 * most + kWordColors) / kWordColors, colors = kWordColors * words;
-  const int sets = 2 * slab_count_;
-  used_colors_.assign(3 * words * step.body_count(), 0);  // a body is in one inside and up to two gaps
-  group_count_.assign(colors * sets, 0);
-  color_first_.assign(sets + 1, 0);
-  set_of_group_.clear();
-  color_of_group_.clear();
-  for (const RowGroup& g : step.groups()) {
-    const int slab_a = slab_of_body_[g.body_a], slab_b = g.body_b < 0 ? slab_a : slab_of_body_[g.body_b];
-    const int low = std::min(slab_a, slab_b);
-    const bool inside = slab_a == slab_b;
-    const int set = inside ? low : set_of_gap(low);
-    const auto used = [&](int body, int slab) {
-      return used_colors_.data() + words * (3 * body + (inside ? 0 : slab == low ? 1 : 2));
-    };
-    std::uint64_t* a = used(g.body_a, slab_a);
-    std::uint64_t* b = g.body_b < 0 ? a : used(g.body_b, slab_b);
-    int* count = group_count_.data() + colors * set;
-    int best = color_first_[set + 1];
-    for (int color = color_first_[set + 1] - 1; color >= 0; --color) {
-      const bool free = ((a[color / kWordColors] | b[color / kWordColors]) >> color % kWordColors & 1) == 0;
-      if (free && (best == color_first_[set + 1] || count[color] <= count[best])) best = color;
-    }
-    color_first_[set + 1] = std::max(color_first_[set + 1], best + 1);
-    a[best / kWordColors] |= std::uint64_t{1} << best % kWordColors;
-    b[best / kWordColors] |= std::uint64_t{1} << best % kWordColors;
-    ++count[best];
-    set_of_group_.push_back(set);
-    color_of_group_.push_back(best);
-  }
-  std::partial_sum(color_first_.begin(), color_first_.end(), color_first_.begin());
-}
-
-void SlabSweeps::sort_groups(const PreparedStep& step, ParallelTasks& tasks) {
-  const auto color = [this](int g) { return color_first_[set_of_group_[g]] + color_of_group_[g]; };
-  sort_into_buckets(static_cast<int>(set_of_group_.size()), color_first_.back(), color, group_first_,
-                    groups_);
-  const auto rows = [&](int g) { return step.groups()[g].row_count; };
-  tasks.run(set_count(), [&](int set) {
-    for (int c = color_first_[set]; c < color_first_[set + 1]; ++c)
-      std::sort(groups_.begin() + group_first_[c], groups_.begin() + group_first_[c + 1],
-                [&](int a, int b) { return rows(a) != rows(b) ? rows(a) > rows(b) : a < b; });
+// The longest groups first, each to the first octet that has room for it and neither of its bodies. Bodies are those of the
+// step, and rows are counted from the first of the set, until places are assigned.
+void SlabSweeps::fill_octets(const PreparedStep& step, int set) {
+  const std::span<const RowGroup> all = step.groups();
+  std::sort(groups_.begin() + group_first_[set], groups_.begin() + group_first_[set + 1], [&](int a, int b) {
+    return all[a].row_count != all[b].row_count ? all[a].row_count > all[b].row_count : a < b;
   });
-}
-
-// Insides by slab, then the gaps behind even slabs, then those behind odd ones.
-int SlabSweeps::set_of_gap(int gap) const {
-  const int even_gaps = slab_count_ / 2;
-  return slab_count_ + (gap % 2 == 0 ? 0 : even_gaps) + gap / 2;
-}
-
-// A task waits for those before it that share a slab with it: an inside for the gaps around it of the sweep before, a gap
-// for the two insides, and one behind an odd slab for the gaps around it too.
-void SlabSweeps::build_graph() {
-  const int slabs = slab_count_, gaps = slabs - 1, tasks = slabs + gaps;
-  waits_.clear();
-  places_.resize(kMostSweeps * tasks);
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
-    const int begin = sweep * tasks, before = begin - tasks;
-    for (int slab = 0; slab < slabs; ++slab) {
-      places_[begin + slab] = (slab + 0.5) / slabs;
-      if (sweep == 0) continue;
-      for (const int gap : {slab - 1, slab}) {
-        if (gap >= 0 && gap < gaps) waits_.emplace_back(before + set_of_gap(gap), begin + slab);
-      }
-      if (gaps == 0) waits_.emplace_back(before, begin);
+  OpenOctets open;
+  int octets = 0, rows = 0;
+  for (const int g : groups_of_set(set)) {
+    const auto [body_a, body_b, first_row, row_count] = all[g];
+    int i = open.find(body_a, body_b);
+    if (i < 0) {
+      octets_[group_first_[set] + octets] = empty_octet(rows, row_count);
+      rows += row_count;
+      i = open.open(octets++);
     }
-    for (int gap = 0; gap < gaps; ++gap) {
-      const int task = begin + set_of_gap(gap);
-      places_[task] = (gap + 0.75) / slabs;
-      waits_.emplace_back(begin + gap, task);
-      waits_.emplace_back(begin + gap + 1, task);
-      for (const int even : {gap - 1, gap + 1}) {
-        if (gap % 2 == 1 && even < gaps) waits_.emplace_back(begin + set_of_gap(even), task);
-      }
-    }
+    Octet& octet = octets_[group_first_[set] + open.octet(i)];
+    const int lane = open.add(i, body_a, body_b);
+    octet.body_a[lane] = body_a;
+    octet.body_b[lane] = body_b;
+    place_of_group_[g] = kOctetLanes * octet.first_row + lane;
   }
-  places_.push_back(kLastPlace);
-  graph_.build(kMostSweeps * tasks + 1, waits_, places_);
+  octet_count_[set] = octets;
+  row_first_[set + 1] = rows;
 }
 
-// What two threads write stays apart in memory: velocities by slab, each body in a cache line of its own, and rows by
-// set, in the order in which they are visited.
+// What two threads write stays apart in memory: velocities by slab and rows by set, in the order in which they are visited.
 void SlabSweeps::assign_places(const PreparedStep& step) {
   const int n = step.body_count();
   sort_into_buckets(
-      n, slab_count_, [this](int body) { return slab_of_body_[body]; }, slab_first_, queue_);
+      n, slabs_.count(), [this](int body) { return slabs_.of_body()[body]; }, slab_first_, bodies_by_slab_);
   place_of_body_.resize(n);
-  for (int place = 0; place < n; ++place) place_of_body_[queue_[place]] = place;
-  bodies_.resize(n + 1);
-  bodies_[n] = {};
-  place_of_group_.resize(groups_.size());
-  int place = 0;
-  for (const int g : groups_) {
-    place_of_group_[g] = place;
-    place += step.groups()[g].row_count;
-  }
-  rows_.resize(place);
-  impulse_.resize(place);
-  side_.resize(place);
-  changed_.resize(set_count());
+  for (int place = 0; place < n; ++place) place_of_body_[bodies_by_slab_[place]] = place;
+  bodies_.resize(n + slabs_.set_count());
+  std::fill(bodies_.begin() + n, bodies_.end(), SlabBody{});
+  row_first_[0] = 0;
+  std::partial_sum(row_first_.begin(), row_first_.end(), row_first_.begin());
+  rows_.resize(row_first_.back());
 }
 
 void SlabSweeps::pack_rows(const PreparedStep& step, int set) {
-  const StepProblem& p = step.problem();
-  const auto bound = [](double x) {
-    constexpr double kMost = std::numeric_limits<float>::max();
-    return static_cast<float>(std::clamp(x, -kMost, kMost));
-  };
-  for (int i = group_first_[color_first_[set]]; i < group_first_[color_first_[set + 1]]; ++i) {
-    const int g = groups_[i];
-    const RowGroup& group = step.groups()[g];
-    for (int k = 0; k < group.row_count; ++k) {
-      const int r = group.first_row + k;
-      SlabRow& row = rows_[place_of_group_[g] + k];
-      row = {};
-      const double inverse = kOverRelaxation / step.diagonal()[r];
-      for (int c = 0; c < 6; ++c) {
-        row.jacobian_a[c] = static_cast<float>(p.jacobian[12L * r + c] * inverse);
-        row.jacobian_b[c] = static_cast<float>(p.jacobian[12L * r + 6 + c] * inverse);
-        row.mass_jacobian_a[c] = static_cast<float>(step.mass_jacobian()[12L * r + c]);
-        row.mass_jacobian_b[c] = static_cast<float>(step.mass_jacobian()[12L * r + 6 + c]);
-      }
-      row.kept() = static_cast<float>(1 - p.compliance[r] * inverse);
-      row.push() = static_cast<float>(p.rhs[r] * inverse);
-      row.lower() = bound(p.lower[r]);
-      row.upper() = bound(p.upper[r]);
+  std::fill(rows_.begin() + row_first_[set], rows_.begin() + row_first_[set + 1], OctetRow{});
+  for (Octet& octet : octets_of(set)) {
+    octet.first_row += row_first_[set];
+    for (int* body : {octet.body_a, octet.body_b}) {
+      for (int lane = 0; lane < kOctetLanes; ++lane)
+        body[lane] = body[lane] < 0 ? step.body_count() + set : place_of_body_[body[lane]];
     }
+  }
+  for (const int g : groups_of_set(set)) {
+    place_of_group_[g] += kOctetLanes * row_first_[set];
+    pack_group(step, g);
+  }
+}
+
+void SlabSweeps::pack_group(const PreparedStep& step, int g) {
+  const StepProblem& p = step.problem();
+  const RowGroup& group = step.groups()[g];
+  const int numbers = group.body_b < 0 ? 6 : 12, lane = place_of_group_[g] % kOctetLanes;
+  for (int k = 0; k < group.row_count; ++k) {
+    const int r = group.first_row + k;
+    OctetRow& row = rows_[place_of_group_[g] / kOctetLanes + k];
+    const double inverse = kOverRelaxation / step.diagonal()[r];
+    for (int c = 0; c < numbers; ++c) {
+      row.jacobian[c][lane] = static_cast<float>(p.jacobian[12L * r + c] * inverse);
+      row.mass_jacobian[c][lane] = static_cast<float>(step.mass_jacobian()[12L * r + c]);
+    }
+    row.kept[lane] = static_cast<float>(1 - p.compliance[r] * inverse);
+    row.push[lane] = static_cast<float>(p.rhs[r] * inverse);
+    row.lower[lane] = to_float(p.lower[r]);
+    row.upper[lane] = to_float(p.upper[r]);
   }
 }
 
@@ -239,10 +190,11 @@ void SlabSweeps::take_in(std::span<const double> impulse, std::span<const double
   };
   const auto take_group = [&](int g) {
     const RowGroup& group = step_->groups()[g];
+    const int lane = place_of_group_[g] % kOctetLanes;
     for (int k = 0; k < group.row_count; ++k) {
-      const int place = place_of_group_[g] + k;
-      impulse_[place] = static_cast<float>(impulse[group.first_row + k]);
-      side_[place] = side_of(rows_[place], impulse_[place]);
+      OctetRow& row = rows_[place_of_group_[g] / kOctetLanes + k];
+      row.impulse[lane] = static_cast<float>(impulse[group.first_row + k]);
+      row.side[lane] = side_of(row.impulse[lane], row.lower[lane], row.upper[lane]);
     }
   };
   run_over_chunks(tasks, take_body, take_group);
@@ -257,13 +209,14 @@ void SlabSweeps::give_out(std::span<double> impulse, std::span<double> v, Parall
   const StepProblem& p = step_->problem();
   const auto give_group = [&](int g) {
     const RowGroup& group = step_->groups()[g];
+    const int lane = place_of_group_[g] % kOctetLanes;
     for (int k = 0; k < group.row_count; ++k) {
-      const SlabRow& row = rows_[place_of_group_[g] + k];
-      const float found = impulse_[place_of_group_[g] + k];
+      const OctetRow& row = rows_[place_of_group_[g] / kOctetLanes + k];
+      const float found = row.impulse[lane];
       const int r = group.first_row + k;
-      impulse[r] = found <= row.lower()   ? p.lower[r]
-                   : found >= row.upper() ? p.upper[r]
-                                          : std::clamp<double>(found, p.lower[r], p.upper[r]);
+      impulse[r] = found <= row.lower[lane]   ? p.lower[r]
+                   : found >= row.upper[lane] ? p.upper[r]
+                                              : std::clamp<double>(found, p.lower[r], p.upper[r]);
     }
   };
   run_over_chunks(tasks, give_body, give_group);
@@ -271,36 +224,37 @@ void SlabSweeps::give_out(std::span<double> impulse, std::span<double> v, Parall
 
 // How many rows of the set changed sides.
 int SlabSweeps::update_sides(int set) {
-  const int first = group_first_[color_first_[set]], last = group_first_[color_first_[set + 1]];
-  if (first == last) return 0;
-  const int end = place_of_group_[groups_[last - 1]] + step_->groups()[groups_[last - 1]].row_count;
   int changed = 0;
-  for (int place = place_of_group_[groups_[first]]; place < end; ++place) {
-    const signed char side = side_of(rows_[place], impulse_[place]);
-    changed += side != side_[place];
-    side_[place] = side;
+  for (int r = row_first_[set]; r < row_first_[set + 1]; ++r) {
+    OctetRow& row = rows_[r];
+    for (int lane = 0; lane < kOctetLanes; ++lane) {
+      const signed char side = side_of(row.impulse[lane], row.lower[lane], row.upper[lane]);
+      changed += side != row.side[lane];
+      row.side[lane] = side;
+    }
   }
   return changed;
 }
 
 int SlabSweeps::run(int sweeps, ParallelTasks& tasks, const std::function<void()>& beside) {
   assert(sweeps > 0 && sweeps <= kMostSweeps);
-  const SlabArrays arrays{step_->groups(),
-                          place_of_body_.data(),
-                          place_of_group_.data(),
-                          rows_.data(),
-                          impulse_.data(),
-                          bodies_.data(),
-                          static_cast<int>(place_of_body_.size())};
-  tasks.run(Stage::predict, graph_, [&](int task) {
-    if (task == kMostSweeps * set_count()) return beside();
-    const int sweep = task / set_count(), set = task % set_count();
+  const int sets = slabs_.set_count();
+  tasks.run(Stage::predict, slabs_.graph(), [&](int task) {
+    if (task == kMostSweeps * sets) return beside();
+    const int sweep = task / sets, set = task % sets;
     if (sweep >= sweeps) return;
     check_stop(tasks.stop());
-    for (int color = 0; color < color_count(set); ++color) visit_groups(arrays, groups_of(set, color));
+    for (const Octet& octet : octets_of(set)) visit_octet(octet, rows_.data(), bodies_.data());
     if (sweep == sweeps - 1) changed_[set] = update_sides(set);
   });
   return std::accumulate(changed_.begin(), changed_.end(), 0);
+}
+
+// Rows of an octet stay together, so its place tells it.
+int SlabSweeps::octet_of_group(int group) const {
+  const int set = slabs_.set_of(step_->groups()[group]), row = place_of_group_[group] / kOctetLanes;
+  const auto first = octets_.begin() + group_first_[set], last = first + octet_count_[set];
+  return static_cast<int>(std::ranges::upper_bound(first, last, row, {}, &Octet::first_row) - first) - 1;
 }
 
 }  // namespace cleave

@@ -34,7 +34,7 @@ int count_changes(const std::vector<RowState>& before, const std::vector<RowStat
   return changed;
 }
 
-// Sweeps to start from, options.predictor_sweeps at most: a batch of five costs about a quarter of a factorisation with
+// Sweeps to start from, options.predictor_sweeps at most: a batch of five costs about a tenth of a factorisation with
 // what goes with it. Six recorded steps of a pile of 200 boxes (cfm 1e-5) take 53 factorisations from a cold start after
 // 10 sweeps each, 26 after 40 and 21 after 80; over piles of 200 to 800, towers and chains, cold and warm, the time was
 // least, by 1 to 15 %, with this share and at most 60 or 80 sweeps.

@@ -20,6 +20,20 @@ StepProblem problem_of(int columns) {
   return make_pile(7, options);
 }
 
+// A plate that falls on so many rocks side by side, a row each.
+StepProblem make_star(int rocks) {
+  StepProblem problem;
+  const int plate = append_body(problem, 10, {1, 1, 1}, {0, 0, -1, 0, 0, 0});
+  for (int i = 0; i < rocks; ++i) {
+    RowSpec row{.body_a = plate, .compliance = 1e-5, .lower = 0, .kind = RowKind::normal, .constraint = i};
+    row.body_b = append_body(problem, 1, {1, 1, 1}, {});
+    row.jacobian_a = {0, 0, 1, 0, 0, 0};
+    row.jacobian_b = {0, 0, -1, 0, 0, 0};
+    append_row(problem, row);
+  }
+  return problem;
+}
+
 struct Sweeps {
   explicit Sweeps(const StepProblem& problem, int threads = 1)
       : clock(threads),
@@ -45,55 +59,89 @@ struct Sweeps {
   std::vector<double> impulse, velocity;
 };
 
-TEST(SlabSweepsTest, HoldEveryGroupOnceAndNoBodyTwiceInAColour) {
+// The groups of every octet, set after set.
+std::vector<std::vector<int>> octets_of(const SlabSweeps& sweeps) {
+  std::vector<std::vector<int>> octets;
+  for (int set = 0; set < sweeps.slabs().set_count(); ++set) {
+    const std::size_t begin = octets.size();
+    octets.resize(begin + sweeps.octet_count(set));
+    for (const int g : sweeps.groups_of_set(set)) octets[begin + sweeps.octet_of_group(g)].push_back(g);
+  }
+  return octets;
+}
+
+TEST(SlabSweepsTest, HoldEveryGroupOnceAndNoBodyTwiceInAnOctet) {
   for (const int columns : {1, 2, 9, 30}) {
     const StepProblem problem = problem_of(columns);
     const Sweeps all(problem);
-    const SlabSweeps& sweeps = all.sweeps;
     std::set<int> seen;
-    for (int set = 0; set < sweeps.set_count(); ++set) {
-      for (int color = 0; color < sweeps.color_count(set); ++color) {
-        std::set<int> taken;
-        for (const int g : sweeps.groups_of(set, color)) {
-          const RowGroup& group = all.step.groups()[g];
-          EXPECT_TRUE(seen.insert(g).second);
-          EXPECT_TRUE(taken.insert(group.body_a).second);
-          EXPECT_TRUE(group.body_b < 0 || taken.insert(group.body_b).second);
-        }
+    for (const std::vector<int>& octet : octets_of(all.sweeps)) {
+      std::set<int> taken;
+      EXPECT_TRUE(!octet.empty() && octet.size() <= kOctetLanes) << octet.size();
+      for (const int g : octet) {
+        const RowGroup& group = all.step.groups()[g];
+        EXPECT_TRUE(seen.insert(g).second);
+        EXPECT_TRUE(taken.insert(group.body_a).second);
+        EXPECT_TRUE(group.body_b < 0 || taken.insert(group.body_b).second);
       }
     }
     EXPECT_EQ(seen.size(), all.step.groups().size());
-    for (const RowGroup& group : all.step.groups()) {
-      if (group.body_b < 0) continue;
-      EXPECT_LE(std::abs(sweeps.slab_of_body()[group.body_a] - sweeps.slab_of_body()[group.body_b]), 1);
-    }
   }
-  const StepProblem large = problem_of(30);
-  EXPECT_GE(Sweeps(large).sweeps.slab_count(), 3);
+}
+
+TEST(SlabSweepsTest, FillTheirLanes) {
+  const StepProblem problem = problem_of(30);
+  const Sweeps all(problem);
+  long rows = 0;
+  for (const std::vector<int>& octet : octets_of(all.sweeps)) {
+    int longest = 0;
+    for (const int g : octet) longest = std::max(longest, all.step.groups()[g].row_count);
+    rows += kOctetLanes * longest;
+  }
+  EXPECT_LE(2 * rows, 3 * problem.row_count());
+}
+
+// More groups on one body than are looked through at a time: each gets an octet of its own.
+TEST(SlabSweepsTest, KeepTheGroupsOfOneBodyApart) {
+  constexpr int kRocks = 100;
+  const StepProblem problem = make_star(kRocks);
+  Sweeps star(problem);
+  EXPECT_EQ(octets_of(star.sweeps).size(), kRocks);
+  star.run(1);
+  EXPECT_GT(std::ranges::count_if(star.impulse, [](double impulse) { return impulse > 0; }), 0);
+}
+
+TEST(SlabSweepsTest, CutSlabsOverWhichNoPairReaches) {
+  const StepProblem problem = problem_of(30);
+  const Sweeps all(problem);
+  const Slabs& slabs = all.sweeps.slabs();
+  EXPECT_GE(slabs.count(), 3);
+  for (const RowGroup& group : all.step.groups()) {
+    if (group.body_b < 0) continue;
+    EXPECT_LE(std::abs(slabs.of_body()[group.body_a] - slabs.of_body()[group.body_b]), 1);
+  }
 }
 
 // Row by row, from the equations at the top of slab_sweeps.h.
-void slow_sweep(Sweeps& s) {
+void slow_group(Sweeps& s, const RowGroup& group) {
   const StepProblem& p = s.step.problem();
-  for (int set = 0; set < s.sweeps.set_count(); ++set) {
-    for (int color = 0; color < s.sweeps.color_count(set); ++color) {
-      for (const int g : s.sweeps.groups_of(set, color)) {
-        const RowGroup& group = s.step.groups()[g];
-        for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
-          double w = p.compliance[r] * s.impulse[r] - p.rhs[r];
-          const auto velocity = [&](int side) { return s.velocity.data() + 6 * p.row_body[2 * r + side]; };
-          for (int side = 0; side < (group.body_b < 0 ? 1 : 2); ++side)
-            for (int c = 0; c < 6; ++c) w += p.jacobian[12 * r + 6 * side + c] * velocity(side)[c];
-          const double whole = SlabSweeps::kOverRelaxation * w / s.step.diagonal()[r];
-          const double next = std::clamp(s.impulse[r] - whole, p.lower[r], p.upper[r]);
-          for (int side = 0; side < (group.body_b < 0 ? 1 : 2); ++side)
-            for (int c = 0; c < 6; ++c)
-              velocity(side)[c] += s.step.mass_jacobian()[12 * r + 6 * side + c] * (next - s.impulse[r]);
-          s.impulse[r] = next;
-        }
-      }
-    }
+  const auto velocity = [&](int r, int side) { return s.velocity.data() + 6 * p.row_body[2 * r + side]; };
+  for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
+    double w = p.compliance[r] * s.impulse[r] - p.rhs[r];
+    for (int side = 0; side < (group.body_b < 0 ? 1 : 2); ++side)
+      for (int c = 0; c < 6; ++c) w += p.jacobian[12 * r + 6 * side + c] * velocity(r, side)[c];
+    const double whole = SlabSweeps::kOverRelaxation * w / s.step.diagonal()[r];
+    const double next = std::clamp(s.impulse[r] - whole, p.lower[r], p.upper[r]);
+    for (int side = 0; side < (group.body_b < 0 ? 1 : 2); ++side)
+      for (int c = 0; c < 6; ++c)
+        velocity(r, side)[c] += s.step.mass_jacobian()[12 * r + 6 * side + c] * (next - s.impulse[r]);
+    s.impulse[r] = next;
   }
+}
+
+void slow_sweep(Sweeps& s) {
+  for (const std::vector<int>& octet : octets_of(s.sweeps))
+    for (const int g : octet) slow_group(s, s.step.groups()[g]);
 }
 
 TEST(SlabSweepsTest, AreThoseOfASlowSweepInTheSameOrder) {
