@@ -58,6 +58,11 @@ class BlockMatrix {
   void assemble(const WeightedRows& rows);
   bool factor();
   int branch_count() const { return static_cast<int>(cholesky_.symbolic().branches().size()); }
+  // Of a whole step.
+  std::span<const int> bodies_of(int branch) const {
+    return std::span(branch_locals_)
+        .subspan(branch_local_first_[branch], branch_local_first_[branch + 1] - branch_local_first_[branch]);
+  }
 
   BlockCholesky& cholesky() { return cholesky_; }
   const BlockCholesky& cholesky() const { return cholesky_; }
@@ -87,9 +92,9 @@ class BlockMatrix {
   std::vector<int> entry_first_;                   // (branches + 1)
   std::vector<BlockCholesky::Place> late_places_;  // of the slots
   std::vector<int> late_branch_, late_first_, late_slots_;  // slots by the branch that they are kept for
-  std::vector<int> group_branch_;  // branch of assembly, in the order in which the groups were given
-  std::vector<int> group_order_;   // scratch: their places by branch
-  std::vector<double> late_blocks_;              // (slots, 6, 6)
+  std::vector<int> group_branch_;    // branch of assembly, in the order in which the groups were given
+  std::vector<int> group_order_;     // scratch: their places by branch
+  std::vector<double> late_blocks_;  // (slots, 6, 6)
   std::vector<char> late_any_;
   std::vector<double> weights_;  // (m)
   std::vector<std::pair<int, int>> edges_;

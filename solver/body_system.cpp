@@ -39,9 +39,17 @@ void BodySystem::weigh_product(const Chunk& groups, std::span<const double> x) {
   }
 }
 
+inline void BodySystem::collect_body(int body, std::span<const double> f_v, std::span<double> x) const {
+  add_sides(step_->sides_of_body(body), group_sums_.data(), f_v.data() + 6L * body, x.data() + place(body));
+}
+
 void BodySystem::collect(const Chunk& bodies, std::span<const double> f_v, std::span<double> x) const {
-  for (int body = bodies.first; body < bodies.last; ++body)
-    add_sides(step_->sides_of_body(body), group_sums_.data(), f_v.data() + 6L * body, x.data() + place(body));
+  for (int body = bodies.first; body < bodies.last; ++body) collect_body(body, f_v, x);
+}
+
+void BodySystem::collect(std::span<const int> bodies, std::span<const double> f_v,
+                         std::span<double> x) const {
+  for (const int body : bodies) collect_body(body, f_v, x);
 }
 
 void BodySystem::collect_product(const Chunk& bodies, std::span<const double> x,
@@ -69,15 +77,14 @@ void BodySystem::expand(const Chunk& groups, std::span<const double> x, std::spa
   }
 }
 
-void BodySystem::to_bodies(const Chunk& bodies, std::span<const double> x, std::span<double> by_body) const {
-  for (int body = bodies.first; body < bodies.last; ++body)
-    std::copy_n(x.data() + place(body), 6, by_body.data() + 6L * body);
+void BodySystem::to_bodies(std::span<const int> bodies, std::span<const double> x,
+                           std::span<double> by_body) const {
+  for (const int body : bodies) std::copy_n(x.data() + place(body), 6, by_body.data() + 6L * body);
 }
 
-void BodySystem::to_positions(const Chunk& bodies, std::span<const double> by_body,
+void BodySystem::to_positions(std::span<const int> bodies, std::span<const double> by_body,
                               std::span<double> x) const {
-  for (int body = bodies.first; body < bodies.last; ++body)
-    std::copy_n(by_body.data() + 6L * body, 6, x.data() + place(body));
+  for (const int body : bodies) std::copy_n(by_body.data() + 6L * body, 6, x.data() + place(body));
 }
 
 }  // namespace cleave

@@ -2,8 +2,8 @@
 //
 //     H = M + J'^T D J',   right-hand side f_v + J'^T D f_r,   dlambda = D (f_r - J' dv)
 //
-// with rows as the weights turn them (row_weights.h). Every function works on one chunk of the step's groups or
-// bodies, so that chunks can be dealt out to threads; groups come before bodies.
+// with rows as the weights turn them (row_weights.h). Every function works on some of the step's groups or bodies, so that
+// they can be dealt out to threads; groups come before bodies.
 #pragma once
 
 #include <span>
@@ -28,18 +28,20 @@ class BodySystem {
   void weigh_product(const Chunk& groups, std::span<const double> x);
   // x = f_v + the sums of all groups; f_v (n, 6) as in the problem.
   void collect(const Chunk& bodies, std::span<const double> f_v, std::span<double> x) const;
+  void collect(std::span<const int> bodies, std::span<const double> f_v, std::span<double> x) const;
   // out = M x + the sums of all groups.
   void collect_product(const Chunk& bodies, std::span<const double> x, std::span<double> out) const;
   // dlambda (m) = D (f_r - J' x)
   void expand(const Chunk& groups, std::span<const double> x, std::span<const double> f_r,
               std::span<double> dlambda) const;
   // From positions to the order of the problem and back.
-  void to_bodies(const Chunk& bodies, std::span<const double> x, std::span<double> by_body) const;
-  void to_positions(const Chunk& bodies, std::span<const double> by_body, std::span<double> x) const;
+  void to_bodies(std::span<const int> bodies, std::span<const double> x, std::span<double> by_body) const;
+  void to_positions(std::span<const int> bodies, std::span<const double> by_body, std::span<double> x) const;
 
  private:
   long place(int body) const { return 6L * (position_.empty() ? body : position_[body]); }
   void load(const RowGroup& group, std::span<const double> x, double* both) const;
+  void collect_body(int body, std::span<const double> f_v, std::span<double> x) const;
 
   const PreparedStep* step_ = nullptr;
   std::span<const int> position_;

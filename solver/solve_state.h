@@ -108,7 +108,10 @@ struct SolveState {
   // The greatest of the values of all rows, at least 0; infinite where one is no number.
   template <class Value>
   double greatest_over_rows(const Value& value_of);
-  // The same of the values of whole ranges: value_of(first, last).
+  // Of the rows first .. last - 1.
+  template <class Value>
+  static double greatest_of(int first, int last, const Value& value_of);
+  // Of the values of whole ranges: value_of(first, last).
   template <class Value>
   double greatest_over_ranges(const Value& value_of);
 
@@ -164,16 +167,19 @@ double SolveState::greatest_over_ranges(const Value& value_of) {
 }
 
 template <class Value>
+double SolveState::greatest_of(int first, int last, const Value& value_of) {
+  double greatest = 0;
+  for (int r = first; r < last; ++r) {
+    const double value = value_of(r);
+    if (value <= greatest) continue;
+    greatest = value > greatest ? value : std::numeric_limits<double>::infinity();
+  }
+  return greatest;
+}
+
+template <class Value>
 double SolveState::greatest_over_rows(const Value& value_of) {
-  return greatest_over_ranges([&](int first, int last) {
-    double greatest = 0;
-    for (int r = first; r < last; ++r) {
-      const double value = value_of(r);
-      if (value <= greatest) continue;
-      greatest = value > greatest ? value : std::numeric_limits<double>::infinity();
-    }
-    return greatest;
-  });
+  return greatest_over_ranges([&](int first, int last) { return greatest_of(first, last, value_of); });
 }
 
 }  // namespace cleave

@@ -36,7 +36,7 @@ void BranchKernel::request_memory(const PreparedStep& step, ParallelTasks& tasks
   MemoryCount memory;
   matrix_.count(memory);
   separators_.count(memory);
-  for (const TaskGraph* graph : {&assembly_graph_, &forward_graph_, &backward_graph_}) graph->count(memory);
+  for (const TaskGraph* graph : {&assembly_graph_, &substitution_graph_}) graph->count(memory);
   for (const FactorTasks* factor : {&local_tasks_, &interface_tasks_}) factor->count(memory);
   memory.add_grown(stages_.of_body, waits_, places_, changed_, factored_);
   memory.add<double>(12, step.groups().size());
@@ -66,20 +66,24 @@ void BranchKernel::list_tasks() {
     (branches[b].stage < stages_.first_of_interface ? local : interface).push_back(b);
   local_tasks_.list(symbolic, local);
   interface_tasks_.list(symbolic, interface);
+  list_substitution();
+}
+
+// Forward of branch b is task b, backward task 2 count - 1 - b.
+void BranchKernel::list_substitution() {
+  const auto branches = matrix_.cholesky().symbolic().branches();
+  const int count = static_cast<int>(branches.size()), last = 2 * count - 1;
   waits_.clear();
-  places_.clear();
-  for (int b = 0; b < count; ++b) {
-    places_.push_back(branches[b].place);
-    if (branches[b].parent >= 0) waits_.emplace_back(b, branches[b].parent);
-  }
+  places_.resize(count);
+  for (int b = 0; b < count; ++b) places_[b] = branches[b].place;
   assembly_graph_.build(count, {}, places_);
-  forward_graph_.build(count, waits_, places_);
-  for (auto& [earlier, later] : waits_) {
-    const int child = earlier;
-    earlier = count - 1 - later, later = count - 1 - child;
+  for (int b = count - 1; b >= 0; --b) {
+    places_.push_back(branches[b].place);
+    const int parent = branches[b].parent;
+    waits_.emplace_back(b, parent >= 0 ? parent : last - b);
+    if (parent >= 0) waits_.emplace_back(last - parent, last - b);
   }
-  std::ranges::reverse(places_);
-  backward_graph_.build(count, waits_, places_);
+  substitution_graph_.build(2 * count, waits_, places_);
 }
 
 // Rows in blocks are turned by their bases too, so that equal weights do not say that nothing has changed.
@@ -113,30 +117,39 @@ bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
   return succeeded;
 }
 
-void BranchKernel::substitute(ParallelTasks& tasks) {
+// before(b) and after(b): of each branch, on its way up and on its way down.
+template <class Before, class After>
+void BranchKernel::substitute(ParallelTasks& tasks, const Before& before, const After& after) {
   BlockCholesky& cholesky = matrix_.cholesky();
-  const int last_branch = matrix_.branch_count() - 1;
-  tasks.run(Stage::solve, forward_graph_, [&](int b) { cholesky.forward(b, x_.data()); });
-  tasks.run(Stage::solve, backward_graph_, [&](int t) { cholesky.backward(last_branch - t, x_.data()); });
+  const int count = matrix_.branch_count();
+  tasks.run(Stage::solve, substitution_graph_, [&](int task) {
+    if (task < count) {
+      before(task);
+      cholesky.forward(task, x_.data());
+    } else {
+      const int branch = 2 * count - 1 - task;
+      cholesky.backward(branch, x_.data());
+      after(branch);
+    }
+  });
 }
 
+// Rows go in chunks in the order in which they lie in memory: branch by branch, in the graph, the whole took a tenth longer.
 void BranchKernel::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
                          std::span<double> dlambda, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::solve);
-  const auto groups = step_->group_chunks(), bodies = step_->body_chunks();
+  const auto groups = step_->group_chunks();
   tasks.run_over(groups, [&](const Chunk& chunk) { system_.weigh(chunk, f_r); });
-  tasks.run_over(bodies, [&](const Chunk& chunk) { system_.collect(chunk, f_v, x_); });
-  substitute(tasks);
-  tasks.run_over(
-      groups, [&](const Chunk& chunk) { system_.expand(chunk, x_, f_r, dlambda); }, bodies,
-      [&](const Chunk& chunk) { system_.to_bodies(chunk, x_, dv); });
+  substitute(
+      tasks, [&](int branch) { system_.collect(matrix_.bodies_of(branch), f_v, x_); },
+      [&](int branch) { system_.to_bodies(matrix_.bodies_of(branch), x_, dv); });
+  tasks.run_over(groups, [&](const Chunk& chunk) { system_.expand(chunk, x_, f_r, dlambda); });
 }
 
 void BranchKernel::apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) {
-  StageTimer timer(tasks.clock(), Stage::solve);
-  tasks.run_over(step_->body_chunks(), [&](const Chunk& chunk) { system_.to_positions(chunk, f, x_); });
-  substitute(tasks);
-  tasks.run_over(step_->body_chunks(), [&](const Chunk& chunk) { system_.to_bodies(chunk, x_, x); });
+  substitute(
+      tasks, [&](int branch) { system_.to_positions(matrix_.bodies_of(branch), f, x_); },
+      [&](int branch) { system_.to_bodies(matrix_.bodies_of(branch), x_, x); });
 }
 
 double BranchKernel::local_mflop() const {

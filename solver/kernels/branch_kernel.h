@@ -4,8 +4,9 @@
 //     H dv = f_v + J^T D f_r,     dlambda = D (f_r - J dv),
 //
 // dealt out in branches of its elimination tree (block_symbolic.h). Assembly has no order; a branch is factored after its
-// child branches, in tiles where it is large (factor_tasks.h), and so goes forward substitution; back substitution goes
-// from the root. A kernel only says in what order bodies are eliminated.
+// child branches, in tiles where it is large (factor_tasks.h). Substitution is one graph, forward from the leaves
+// to the root and back again; what is read off rows comes before and after it, in chunks that lie side by side in memory. A kernel
+// only says in what order bodies are eliminated.
 //
 // Strategies that end near the solution change few weights from one factorisation to the next. Only branches with a changed
 // row, and those above them, are made anew; the others stand as they are, and the factor has the bytes of a whole one.
@@ -53,9 +54,11 @@ class BranchKernel : public Kernel {
  private:
   void bind(const PreparedStep& step);
   void list_tasks();
+  void list_substitution();
   void find_changed(const RowWeights& weights, ParallelTasks& tasks);
   void request_memory(const PreparedStep& step, ParallelTasks& tasks, bool analyzed);
-  void substitute(ParallelTasks& tasks);
+  template <class Before, class After>
+  void substitute(ParallelTasks& tasks, const Before& before, const After& after);
 
   const PreparedStep* step_ = nullptr;
   Stages stages_;
@@ -64,7 +67,7 @@ class BranchKernel : public Kernel {
   BlockMatrix matrix_;
   int interface_bodies_ = 0;
   FactorTasks local_tasks_, interface_tasks_;
-  TaskGraph assembly_graph_, forward_graph_, backward_graph_;
+  TaskGraph assembly_graph_, substitution_graph_;
   std::vector<std::pair<int, int>> waits_;  // scratch
   std::vector<double> places_;              // scratch
   // The last factorisation failed, is not one of this analysis, or had rows turned by blocks.

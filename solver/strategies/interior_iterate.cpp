@@ -43,12 +43,16 @@ void InteriorIterate::start(SolveState& state) {
 
 bool InteriorIterate::factor(SolveState& state, double delta) {
   const StepProblem& problem = state.step->problem();
+  const bool has_cones = cones_.product_count() > 0;
   state.run_over_rows([&](int first, int last, int) {
     for (int r = first; r < last; ++r)
       state.weight[r] = std::max(problem.compliance[r], delta * state.step->diagonal()[r]);
+    if (!has_cones) barrier_.weigh(state, first, last);
   });
-  cones_.weigh(state, state.weight);
-  barrier_.weigh(state, state.weight);
+  if (has_cones) {
+    cones_.weigh(state, state.weight);
+    state.run_over_rows([&](int first, int last, int) { barrier_.weigh(state, first, last); });
+  }
   return state.factor();
 }
 
@@ -72,8 +76,7 @@ void InteriorIterate::set_products(SolveState& state, Aim aim) {
   cones_.aim(state, target_, aim == Aim::mehrotra);
 }
 
-void InteriorIterate::right_hand_side(SolveState& state) const {
-  barrier_.right_hand_side(state);
+void InteriorIterate::add_cones_to_right_hand_side(SolveState& state) const {
   cones_.add_to_right_hand_side(state);
   for (std::size_t k = 0; k < shift_.change().size(); ++k)
     state.f_r[state.step->set().cones()[k].first_row] -= shift_.change()[k];
@@ -87,12 +90,13 @@ void InteriorIterate::match_shift(SolveState& state, double tolerance, int most)
     for (std::size_t c = 0; c < wanted_shift_.size(); ++c) wanted_shift_[c] -= state.shift[c];
     const double apart = shift_.improve(wanted_shift_);
     if (apart <= tolerance) break;
+    barrier_.right_hand_side(state);
     solve(state);
   }
 }
 
 void InteriorIterate::solve(SolveState& state) {
-  right_hand_side(state);
+  add_cones_to_right_hand_side(state);
   std::fill(state.f_v.begin(), state.f_v.end(), 0.0);
   state.solve();
   course_ = barrier_.follow(state);
@@ -102,7 +106,8 @@ void InteriorIterate::solve(SolveState& state) {
 }
 
 double InteriorIterate::rounding(SolveState& state) {
-  right_hand_side(state);
+  barrier_.right_hand_side(state);
+  add_cones_to_right_hand_side(state);
   change_.resize(state.velocity.size());
   row_error_.resize(state.impulse.size());
   state.step->velocity(state.step->set().in_rows(state.dlambda, state.row_impulse), change_);
@@ -151,13 +156,15 @@ void InteriorIterate::advance(SolveState& state, double step) {
 double InteriorIterate::error(SolveState& state) {
   if (cones_.product_count() > 0) return state.residual_of_cones();
   row_error_.resize(state.slack.size());
-  const double worst = barrier_.error(state, row_error_);
-  return std::max(worst, state.greatest_over_rows([&](int r) { return std::abs(row_error_[r]); }));
+  return barrier_.error(state, row_error_);
 }
 
-void InteriorIterate::keep(const SolveState& state) {
-  kept_impulse_ = state.impulse;
-  barrier_.keep();
+void InteriorIterate::keep(SolveState& state) {
+  kept_impulse_.resize(state.impulse.size());
+  state.run_over_rows([&](int first, int last, int) {
+    std::copy(state.impulse.begin() + first, state.impulse.begin() + last, kept_impulse_.begin() + first);
+    barrier_.keep(first, last);
+  });
   cones_.keep();
 }
 

@@ -65,7 +65,7 @@ class InteriorIterate {
   void read_active_set(SolveState& state) const { barrier_.read_active_set(state); }
 
   // One iterate, to come back to.
-  void keep(const SolveState& state);
+  void keep(SolveState& state);
   void restore(SolveState& state);
   // Its impulses alone, with their velocities.
   void load_kept_impulses(SolveState& state) const { state.load(kept_impulse_); }
@@ -73,8 +73,8 @@ class InteriorIterate {
  private:
   void choose_impulses(SolveState& state);
   void set_products(SolveState& state, Aim aim);
-  void right_hand_side(SolveState& state) const;
-  void solve(SolveState& state);
+  void add_cones_to_right_hand_side(SolveState& state) const;
+  void solve(SolveState& state);  // with the part of the bounds in state.f_r
 
   InteriorConstants constants_;
   IntervalBarrier barrier_;

@@ -47,7 +47,7 @@ class InteriorPoint : public Strategy {
  private:
   enum class Progress { good, finished, rounding };
   void begin(SolveState& state);
-  Progress watch(const SolveState& state, double error);
+  Progress watch(SolveState& state, double error);
   bool polish(SolveState& state);
   bool polish_cones(SolveState& state, double tolerance);
   bool polish_rows(SolveState& state, double tolerance);
@@ -156,7 +156,7 @@ bool InteriorPoint::polish_best(SolveState& state) {
 // Keeps the best iterate. Finished: within the limit, and no better for a while. Rounding: full steps, but a
 // growing error. The error of cones does not see that the start is inside them where the impulses are not: impulses of the step
 // before may be better than the first iterates, which are none the worse for it.
-InteriorPoint::Progress InteriorPoint::watch(const SolveState& state, double error) {
+InteriorPoint::Progress InteriorPoint::watch(SolveState& state, double error) {
   const bool is_start = std::exchange(is_start_, false);
   if (error < best_error_) {
     best_error_ = error;

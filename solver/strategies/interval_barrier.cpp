@@ -30,7 +30,7 @@ BarrierCourse join_courses(std::span<const BarrierCourse> ranges) {
 void IntervalBarrier::Side::start(std::size_t rows) {
   s.assign(rows, 1.0);
   for (std::vector<double>* v : {&is_there, &bound, &z, &inverse_s, &inverse_z, &gap, &now.ds, &now.dz,
-                                 &now.c, &before.ds, &before.dz, &before.c})
+                                 &now.c, &before.ds, &before.dz, &before.c, &kept_s, &kept_z})
     v->assign(rows, 0.0);
 }
 
@@ -88,12 +88,10 @@ void IntervalBarrier::Side::weigh(int first, int last, std::span<const double> i
   }
 }
 
-void IntervalBarrier::weigh(SolveState& state, std::span<double> weight) {
-  state.run_over_rows([&](int first, int last, int) {
-    for (Side& side : sides()) side.weigh(first, last, state.impulse, weight);
+void IntervalBarrier::weigh(SolveState& state, int first, int last) {
+  for (Side& side : sides()) side.weigh(first, last, state.impulse, state.weight);
 #pragma omp simd
-    for (int r = first; r < last; ++r) weight[r] = moves_[r] / weight[r];
-  });
+  for (int r = first; r < last; ++r) state.weight[r] = moves_[r] / state.weight[r];
 }
 
 void IntervalBarrier::Side::aim(int first, int last, double product, double share) {
@@ -102,24 +100,27 @@ void IntervalBarrier::Side::aim(int first, int last, double product, double shar
     now.c[r] = is_there[r] * product - s[r] * z[r] - share * now.ds[r] * now.dz[r];
 }
 
-void IntervalBarrier::aim(SolveState& state, double product, bool second_order) {
-  const double share = second_order ? 1.0 : 0.0;
-  state.run_over_rows([&](int first, int last, int) {
-    for (Side& side : sides()) side.aim(first, last, product, share);
-  });
-}
-
 void IntervalBarrier::Side::add_force(int first, int last, std::span<double> f_r) const {
 #pragma omp simd
   for (int r = first; r < last; ++r) f_r[r] += sign * (z[r] + (now.c[r] - z[r] * gap[r]) * inverse_s[r]);
 }
 
-void IntervalBarrier::right_hand_side(SolveState& state) const {
-  state.run_over_rows([&](int first, int last, int) {
+void IntervalBarrier::set_force(SolveState& state, int first, int last) const {
 #pragma omp simd
-    for (int r = first; r < last; ++r) state.f_r[r] = -moves_[r] * state.slack[r];
-    for (const Side& side : sides()) side.add_force(first, last, state.f_r);
+  for (int r = first; r < last; ++r) state.f_r[r] = -moves_[r] * state.slack[r];
+  for (const Side& side : sides()) side.add_force(first, last, state.f_r);
+}
+
+void IntervalBarrier::aim(SolveState& state, double product, bool second_order) {
+  const double share = second_order ? 1.0 : 0.0;
+  state.run_over_rows([&](int first, int last, int) {
+    for (Side& side : sides()) side.aim(first, last, product, share);
+    set_force(state, first, last);
   });
+}
+
+void IntervalBarrier::right_hand_side(SolveState& state) const {
+  state.run_over_rows([&](int first, int last, int) { set_force(state, first, last); });
 }
 
 void IntervalBarrier::Side::follow(int first, int last, std::span<const double> dlambda,
@@ -168,6 +169,7 @@ void IntervalBarrier::correct(SolveState& state, double trial, double low, doubl
   for (Side& side : sides_) std::swap(side.now, side.before);
   state.run_over_rows([&](int first, int last, int) {
     for (Side& side : sides()) side.correct(first, last, trial, low, high);
+    set_force(state, first, last);
   });
 }
 
@@ -201,14 +203,14 @@ double IntervalBarrier::Side::error(int first, int last, std::span<const double>
 }
 
 double IntervalBarrier::error(SolveState& state, std::span<double> row_error) {
-  worst_.assign(state.range_count(), 0.0);
-  state.run_over_rows([&](int first, int last, int range) {
+  return state.greatest_over_ranges([&](int first, int last) {
 #pragma omp simd
     for (int r = first; r < last; ++r) row_error[r] = moves_[r] * state.slack[r];
+    double worst = 0;
     for (const Side& side : sides())
-      worst_[range] = std::max(worst_[range], side.error(first, last, state.step->diagonal(), row_error));
+      worst = std::max(worst, side.error(first, last, state.step->diagonal(), row_error));
+    return std::max(worst, state.greatest_of(first, last, [&](int r) { return std::abs(row_error[r]); }));
   });
-  return worst_.empty() ? 0.0 : std::ranges::max(worst_);
 }
 
 void IntervalBarrier::read_active_set(SolveState& state) const {
@@ -221,12 +223,17 @@ void IntervalBarrier::read_active_set(SolveState& state) const {
   }
 }
 
-void IntervalBarrier::keep() {
-  for (Side& side : sides_) side.kept_s = side.s, side.kept_z = side.z;
+void IntervalBarrier::Side::keep(int first, int last) {
+  std::copy(s.begin() + first, s.begin() + last, kept_s.begin() + first);
+  std::copy(z.begin() + first, z.begin() + last, kept_z.begin() + first);
+}
+
+void IntervalBarrier::keep(int first, int last) {
+  for (Side& side : sides()) side.keep(first, last);
 }
 
 void IntervalBarrier::restore() {
-  for (Side& side : sides_) side.s = side.kept_s, side.z = side.kept_z;
+  for (Side& side : sides()) side.s = side.kept_s, side.z = side.kept_z;
 }
 
 }  // namespace cleave

@@ -50,29 +50,29 @@ class IntervalBarrier {
   // are at least, m/s.
   void start(SolveState& state, std::span<const double> speed);
 
-  // weight (m): the compliance that is factored in, D out; on the rows of cones 1 / D in. Fixes s, z and gap for the
-  // directions that follow.
-  void weigh(SolveState& state, std::span<double> weight);
+  // Of these rows, state.weight: the compliance that is factored in, D out; on the rows of cones 1 / D in. Fixes s, z and
+  // gap for the directions that follow.
+  void weigh(SolveState& state, int first, int last);
 
-  // Products s z that the direction aims at, less the second-order term of the last direction or not.
+  // Products s z that the direction aims at, less the second-order term of the last direction or not, and state.f_r for it.
   void aim(SolveState& state, double product, bool second_order);
-  void right_hand_side(SolveState& state) const;  // state.f_r from state.slack
+  void right_hand_side(SolveState& state) const;  // state.f_r anew
   BarrierCourse follow(SolveState& state);        // ds and dz from state.dlambda; returns where they lead
 
-  // Aims products that a step of `trial` would leave outside of [low, high] back at it; restore_direction brings back the
-  // direction from before.
+  // Aims products that a step of `trial` would leave outside of [low, high] back at it, with state.f_r; restore_direction
+  // brings back the direction from before.
   void correct(SolveState& state, double trial, double low, double high);
   void restore_direction();
 
   void advance(SolveState& state, double step);  // impulses, slacks and multipliers
-  // row_error (m): what is left of the equation in w. Returns the largest min(d s, z).
+  // The largest of min(d s, z) and of what is left of the equation in w, m/s; row_error (m): scratch.
   double error(SolveState& state, std::span<double> row_error);
 
   // A row is at a bound where the multiplier outweighs the slack, else free.
   void read_active_set(SolveState& state) const;
 
   // One iterate, to come back to.
-  void keep();
+  void keep(int first, int last);  // rows
   void restore();
 
   bool is_fixed(std::size_t row) const { return use_[row] == RowUse::fixed; }
@@ -94,6 +94,7 @@ class IntervalBarrier {
     void follow(int first, int last, std::span<const double> dlambda, BarrierCourse& course);
     void correct(int first, int last, double trial, double low, double high);
     double error(int first, int last, std::span<const double> d, std::span<double> row_error) const;
+    void keep(int first, int last);
 
     double sign;                                    // sigma
     std::vector<double> is_there;                   // 1, or 0 where a row has no such bound
@@ -105,6 +106,7 @@ class IntervalBarrier {
   enum class RowUse : std::uint8_t { bounded, fixed, of_cone };
 
   void add_bounds(SolveState& state, int row, double speed);
+  void set_force(SolveState& state, int first, int last) const;
   // None where no row has a bound.
   std::span<Side> sides() { return std::span(sides_).first(bounds_ > 0 ? 2 : 0); }
   std::span<const Side> sides() const { return std::span(sides_).first(bounds_ > 0 ? 2 : 0); }
@@ -113,7 +115,6 @@ class IntervalBarrier {
   std::array<Side, 2> sides_ = {Side(1), Side(-1)};  // lower, upper
   std::size_t bounds_ = 0;                           // finite ones
   std::vector<BarrierCourse> courses_;               // scratch: of the ranges, largest_step its inverse
-  std::vector<double> worst_;                        // scratch: of the ranges
   std::vector<RowUse> use_;                          // (m)
   std::vector<double> moves_;                        // (m) 0 where a row is fixed, else 1
 };
