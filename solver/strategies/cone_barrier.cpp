@@ -1,14 +1,13 @@
 #include "solver/strategies/cone_barrier.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace cleave {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 Vector3d at(const LaneVector& x, int lane) { return {x.n[lane], x.u[lane], x.v[lane]}; }
@@ -20,6 +19,14 @@ LaneVector to_second_order(const Lanes& mu, const LaneVector& impulse) {
 LaneVector inside(LaneVector x, const Lanes& margin) {
   x.n = x.n.max(tangential(x) + margin);
   return x;
+}
+
+template <int Rows>
+void store_basis(const LaneWeights& weights, int lane, double* basis) {
+  for (int column = 0; column < Rows; ++column) {
+    const Vector3d entries = at(weights.basis.row[column], lane);
+    for (int i = 0; i < Rows; ++i) basis[Rows * column + i] = entries[i];
+  }
 }
 
 }  // namespace
@@ -35,31 +42,6 @@ LaneVector ConeBarrier::Contacts::load(std::span<const double> x) const {
 
 void ConeBarrier::Contacts::store(const LaneVector& lanes, std::span<double> x) const {
   for (int lane = 0; lane < count; ++lane) cone[lane]->store(at(lanes, lane), x);
-}
-
-void find_weight_basis(const Matrix3d& x, std::span<const double> compliance, std::span<double> basis,
-                       std::span<double> d) {
-  const int n = static_cast<int>(compliance.size());
-  Eigen::Matrix<double, 3, 6, Eigen::RowMajor> y = Eigen::Matrix<double, 3, 6, Eigen::RowMajor>::Zero();
-  y.leftCols<3>() = x;
-  for (int k = 0; k < n; ++k) y(k, 3 + k) = std::sqrt(compliance[k]);
-  Matrix3d rows = Matrix3d::Identity();  // y now = rows times y as it was
-  std::array<int, 3> order = {0, 1, 2};
-  for (int k = 0; k < n; ++k) {
-    for (int i = k + 1; i < n; ++i) {
-      if (y.row(order[i]).squaredNorm() > y.row(order[k]).squaredNorm()) std::swap(order[i], order[k]);
-    }
-    const int pivot = order[k];
-    d[k] = y.row(pivot).squaredNorm();
-    for (int i = k + 1; i < n; ++i) {
-      const double share = y.row(order[i]).dot(y.row(pivot)) / d[k];
-      y.row(order[i]) -= share * y.row(pivot);
-      rows.row(order[i]) -= share * rows.row(pivot);
-    }
-  }
-  for (int k = 0; k < n; ++k) {
-    for (int i = 0; i < n; ++i) basis[n * k + i] = rows(order[k], i);
-  }
 }
 
 // task(contacts, k, range) for all contacts, four at a time, in the ranges of their normal rows.
@@ -84,6 +66,7 @@ void ConeBarrier::list_contacts(const SolveState& state) {
       while (four.count < kContactLanes && first < cones.size() && cones[first].first_row < last_row) {
         four.mu[four.count] = cones[first].mu;
         four.is_there[four.count] = 1;
+        four.second_tangent[four.count] = cones[first].row_count == 3 ? 1 : 0;
         four.cone[four.count++] = &cones[first++];
       }
       contacts_.push_back(four);
@@ -99,6 +82,8 @@ void ConeBarrier::start(SolveState& state, std::span<const double> speed) {
   scaled_gap_.resize(contacts_.size());
   compliance_.resize(contacts_.size());
   now_.resize(contacts_.size());
+  kept_.resize(contacts_.size());
+  is_kept_ = false;
   run_over_contacts(state, [&](const Contacts& four, int k, int) {
     Lanes least = Lanes::Ones(), d = Lanes::Ones();
     for (int lane = 0; lane < four.count; ++lane) {
@@ -113,7 +98,7 @@ void ConeBarrier::start(SolveState& state, std::span<const double> speed) {
     const LaneScaling scaling = find_scaling(point.s, point.z);
     point.w = scaling.v;
     point.w_inverse = scaling.v_inverse;
-    point.l = point.w * point.z;
+    point.by = divisor(point.w * point.z);
   });
 }
 
@@ -125,33 +110,33 @@ void ConeBarrier::weigh(SolveState& state, std::span<double> inverse_weight) {
     const LaneVector gap = to_second_order(four.mu, four.load(state.impulse)) - point.s;
     scaled_gap_[k] = transposed_times(point.w_inverse, four.is_there * gap);
     compliance_[k] = four.load(inverse_weight);
+    LaneMatrix x = point.w_inverse;
+    x.row[0] = four.mu * x.row[0];
+    x.row[2] = four.second_tangent * x.row[2];
+    const LaneWeights weights = find_weight_basis(x, compliance_[k]);
+    four.store(weights.inverse, inverse_weight);
     for (int lane = 0; lane < four.count; ++lane) {
-      const FrictionCone& cone = *four.cone[lane];
-      Matrix3d x;
-      for (int row = 0; row < 3; ++row) x.row(row) = at(point.w_inverse.row[row], lane);
-      x.row(0) *= cone.mu;
-      const Vector3d compliance = at(compliance_[k], lane);
-      const auto rows = static_cast<std::size_t>(cone.row_count);
-      find_weight_basis(x, {compliance.data(), rows}, blocks[&cone - first].basis,
-                        inverse_weight.subspan(cone.first_row, rows));
+      WeightBlock& block = blocks[four.cone[lane] - first];
+      const auto store = block.row_count == 3 ? store_basis<3> : store_basis<2>;
+      store(weights, lane, block.basis.data());
     }
   });
 }
 
 void ConeBarrier::aim(SolveState& state, double product, bool second_order) {
   run_over_contacts(state, [&](const Contacts& four, int k, int) {
-    const LaneVector& l = point_[k].l;
+    const LaneVector& l = point_[k].by.l;
     Direction& now = now_[k];
     now.c = LaneVector{.n = Lanes::Constant(product)} - jordan_product(l, l);
     if (second_order) now.c = now.c - jordan_product(now.ds, now.dz);
     now.c = four.is_there * now.c;
-    now.q = jordan_divide(now.c, l);
+    now.q = jordan_divide(now.c, point_[k].by);
   });
 }
 
 void ConeBarrier::add_to_right_hand_side(SolveState& state) const {
   run_over_contacts(state, [&](const Contacts& four, int k, int) {
-    const LaneVector scaled = point_[k].l + now_[k].q - scaled_gap_[k];
+    const LaneVector scaled = point_[k].by.l + now_[k].q - scaled_gap_[k];
     const LaneVector of_rows = to_second_order(four.mu, point_[k].w_inverse * scaled);
     four.store(four.load(state.f_r) + of_rows, state.f_r);
   });
@@ -166,10 +151,10 @@ BarrierCourse ConeBarrier::follow(SolveState& state) {
              scaled_gap_[k];
     now.dz = now.q - now.ds;
     BarrierCourse& course = courses_[range];
-    const Lanes fastest = inverse_step(point.l, now.ds).max(inverse_step(point.l, now.dz));
+    const Lanes fastest = inverse_step(point.by, now.ds).max(inverse_step(point.by, now.dz));
     course.largest_step = std::max(course.largest_step, fastest.maxCoeff());
-    course.product[0] += (four.is_there * dot(point.l, point.l)).sum();
-    course.product[1] += dot(point.l, now.q).sum();
+    course.product[0] += (four.is_there * dot(point.by.l, point.by.l)).sum();
+    course.product[1] += dot(point.by.l, now.q).sum();
     course.product[2] += dot(now.ds, now.dz).sum();
   });
   return join_courses(courses_);
@@ -179,7 +164,7 @@ BarrierCourse ConeBarrier::follow(SolveState& state) {
 void ConeBarrier::predict_shift(SolveState& state, std::span<double> shift) const {
   const FrictionCone* first = state.step->set().cones().data();
   run_over_contacts(state, [&](const Contacts& four, int k, int) {
-    const Lanes speed = four.mu * tangential(point_[k].w_inverse * (point_[k].l + now_[k].dz));
+    const Lanes speed = four.mu * tangential(point_[k].w_inverse * (point_[k].by.l + now_[k].dz));
     for (int lane = 0; lane < four.count; ++lane)
       shift[four.cone[lane] - first] = four.cone[lane]->coulomb ? speed[lane] : 0.0;
   });
@@ -189,28 +174,36 @@ void ConeBarrier::correct(SolveState& state, double trial, double low, double hi
   before_.resize(now_.size());
   now_.swap(before_);
   run_over_contacts(state, [&](const Contacts& four, int k, int) {
-    const LaneVector& l = point_[k].l;
+    const LaneVector& l = point_[k].by.l;
     const Direction& before = before_[k];
     Direction& now = now_[k];
     const Lanes step = Lanes::Constant(trial);
     const LaneVector product = jordan_product(l + step * before.ds, l + step * before.dz);
     now.c = before.c + four.is_there * change_into_band(product, low, high);
-    now.q = jordan_divide(now.c, l);
+    now.q = jordan_divide(now.c, point_[k].by);
   });
 }
 
 void ConeBarrier::advance(SolveState& state, double step) {
+  const bool leaves = std::exchange(is_kept_, false);
+  if (leaves) point_.swap(kept_);
+  const std::vector<Point>& from = leaves ? kept_ : point_;
   run_over_contacts(state, [&](const Contacts&, int k, int) {
+    const Point& old = from[k];
     Point& point = point_[k];
     const Lanes share = Lanes::Constant(step);
-    const LaneVector s = point.l + share * now_[k].ds, z = point.l + share * now_[k].dz;
-    point.s = transposed_times(point.w, s);
-    point.z = point.w_inverse * z;
+    const LaneVector s = old.by.l + share * now_[k].ds, z = old.by.l + share * now_[k].dz;
     const LaneScaling scaling = find_scaling(s, z);
-    point.l = scaling.v * z;
-    point.w = scaling.v * point.w;
-    point.w_inverse = point.w_inverse * scaling.v_inverse;
+    point.s = transposed_times(old.w, s);
+    point.z = old.w_inverse * z;
+    point.by = divisor(scaling.v * z);
+    point.w = scaling.v * old.w;
+    point.w_inverse = old.w_inverse * scaling.v_inverse;
   });
+}
+
+void ConeBarrier::restore() {
+  if (!std::exchange(is_kept_, true)) point_.swap(kept_);
 }
 
 double ConeBarrier::rounding(SolveState& state, std::span<const double> row_velocity) {

@@ -23,7 +23,6 @@
 // are left in a range of rows, the other lanes hold l = e, W = 1 and zeros, which add nothing.
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
 #include <vector>
 
@@ -33,12 +32,6 @@
 #include "solver/strategies/interval_barrier.h"
 
 namespace cleave {
-
-// D = B diag(1 / d) B^T of D^-1 = X X^T + diag(compliance), by elimination with the largest row first, so that what a soft
-// direction weighs is not lost beside a stiff one. Writes B into basis (row_count x row_count, column by column) and d, the
-// inverse weights.
-void find_weight_basis(const Eigen::Matrix3d& x, std::span<const double> compliance, std::span<double> basis,
-                       std::span<double> d);
 
 class ConeBarrier {
  public:
@@ -61,8 +54,9 @@ class ConeBarrier {
   double rounding(SolveState& state, std::span<const double> row_velocity);
   void advance(SolveState& state, double step);  // slacks and multipliers; impulses are IntervalBarrier's
 
-  void keep() { kept_ = point_; }
-  void restore() { point_ = kept_; }
+  // One iterate, to come back to: it stays where it is, and the next one goes where the last one kept was.
+  void keep() { is_kept_ = true; }
+  void restore();
   std::size_t product_count() const { return count_; }
 
  private:
@@ -72,11 +66,12 @@ class ConeBarrier {
 
     const FrictionCone* cone[kContactLanes] = {};
     int count = 0;
-    Lanes mu = Lanes::Ones(), is_there = Lanes::Zero();
+    Lanes mu = Lanes::Ones(), is_there = Lanes::Zero(), second_tangent = Lanes::Zero();
   };
   struct Point {
     LaneMatrix w, w_inverse;
-    LaneVector l, s, z;
+    LaneDivisor by;  // l
+    LaneVector s, z;
   };
   struct Direction {
     LaneVector ds, dz, c, q;  // scaled
@@ -90,6 +85,7 @@ class ConeBarrier {
   std::vector<int> contacts_first_;  // (ranges + 1) of SolveState::run_over_rows, by their normal rows
   std::size_t count_ = 0;            // of cones
   std::vector<Point> point_, kept_;
+  bool is_kept_ = false;                             // point_ itself is the iterate to come back to
   std::vector<LaneVector> scaled_gap_, compliance_;  // of the iterate that was factored: W^-T gap; C
   std::vector<Direction> now_, before_;
   std::vector<BarrierCourse> courses_;  // scratch: of the ranges, largest_step its inverse

@@ -55,21 +55,29 @@ inline LaneVector jordan_product(const LaneVector& x, const LaneVector& y) {
   return {dot(x, y), x.n * y.u + y.n * x.u, x.n * y.v + y.n * x.v};
 }
 
+// A point inside Q with what divisions by it need.
+struct LaneDivisor {
+  LaneVector l, unit;  // unit = l / norm
+  Lanes inverse_norm = Lanes::Ones();
+};
+
+inline LaneDivisor divisor(const LaneVector& l) {
+  const Lanes inverse = hyperbolic_norm(l).inverse();
+  return {l, inverse * l, inverse};
+}
+
 // q of l o q = c.
-inline LaneVector jordan_divide(const LaneVector& c, const LaneVector& l) {
-  const Lanes norm = hyperbolic_norm(l);
-  const Lanes normal = hyperbolic_product(l, c) / (norm * norm);
-  return {normal, (c.u - normal * l.u) / l.n, (c.v - normal * l.v) / l.n};
+inline LaneVector jordan_divide(const LaneVector& c, const LaneDivisor& by) {
+  const Lanes normal = hyperbolic_product(by.unit, c) * by.inverse_norm, inverse = by.l.n.inverse();
+  return {normal, (c.u - normal * by.l.u) * inverse, (c.v - normal * by.l.v) * inverse};
 }
 
 // The inverse of the step along y at which l + step y leaves Q; 0 or less where it never does. It is the least eigenvalue of
 // y in the coordinates where l is e.
-inline Lanes inverse_step(const LaneVector& l, const LaneVector& y) {
-  const Lanes norm = hyperbolic_norm(l);
-  const LaneVector unit = norm.inverse() * l;
-  const Lanes along = hyperbolic_product(unit, y);
-  const Lanes share = (along + y.n) / (unit.n + 1);
-  return (tangential(y - share * unit) - along) / norm;
+inline Lanes inverse_step(const LaneDivisor& by, const LaneVector& y) {
+  const Lanes along = hyperbolic_product(by.unit, y);
+  const Lanes share = (along + y.n) / (by.unit.n + 1);
+  return (tangential(y - share * by.unit) - along) * by.inverse_norm;
 }
 
 // What brings the eigenvalues of a product within [low, high], by no more than -high downwards.
@@ -103,5 +111,14 @@ inline LaneScaling find_scaling(const LaneVector& s, const LaneVector& z) {
   };
   return {rows(eta, 1), rows(eta.inverse(), -1)};
 }
+
+// D = B diag(1 / d) B^T of D^-1 = X X^T + diag(compliance), by elimination with the largest row first, so that what a soft
+// direction weighs is not lost beside a stiff one. A contact with one tangent has zeros for the other.
+struct LaneWeights {
+  LaneMatrix basis;    // row k: column k of B
+  LaneVector inverse;  // d
+};
+
+LaneWeights find_weight_basis(const LaneMatrix& x, const LaneVector& compliance);
 
 }  // namespace cleave

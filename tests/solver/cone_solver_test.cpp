@@ -47,24 +47,42 @@ TEST(ConeTest, ProjectsOnTheNearestPoint) {
   }
 }
 
+// Four contacts at a time, every second one with one tangent.
 TEST(ConeTest, WeightBasisInvertsItsBlock) {
   SeededRandom random(4);
-  for (int trial = 0; trial < 500; ++trial) {
-    const int rows = 2 + trial % 2;
-    Matrix3d x;
-    for (int k = 0; k < 3; ++k) x.col(k) = draw(random, std::exp(random.uniform(-4, 4)));
-    Matrix3d inverse = x * x.transpose();
-    std::array<double, 3> compliance{}, d{};
-    std::array<double, 9> basis{};
-    for (int k = 0; k < rows; ++k) inverse(k, k) += compliance[k] = std::exp(random.uniform(-6, 2));
-    find_weight_basis(x, std::span(compliance).first(rows), basis, std::span(d).first(rows));
-    Eigen::MatrixXd weights = Eigen::MatrixXd::Zero(rows, rows);
-    for (int k = 0; k < rows; ++k) {
-      const Eigen::Map<const Eigen::VectorXd> column(basis.data() + rows * k, rows);
-      weights += column * column.transpose() / d[k];
+  for (int trial = 0; trial < 250; ++trial) {
+    std::array<Matrix3d, kContactLanes> inverse;
+    LaneMatrix x;
+    LaneVector compliance;
+    const auto set = [](LaneVector& row, int lane, const Vector3d& value) {
+      row.n[lane] = value[0], row.u[lane] = value[1], row.v[lane] = value[2];
+    };
+    for (int lane = 0; lane < kContactLanes; ++lane) {
+      const int rows = 2 + lane % 2;
+      Matrix3d of_lane;
+      for (int k = 0; k < 3; ++k) of_lane.col(k) = draw(random, std::exp(random.uniform(-4, 4)));
+      Vector3d c = Vector3d::Zero();
+      for (int k = 0; k < rows; ++k) c[k] = std::exp(random.uniform(-6, 2));
+      if (rows == 2) of_lane.row(2).setZero();
+      for (int k = 0; k < 3; ++k) set(x.row[k], lane, of_lane.row(k));
+      set(compliance, lane, c);
+      inverse[lane] = of_lane * of_lane.transpose();
+      inverse[lane] += c.asDiagonal();
     }
-    const Eigen::MatrixXd product = weights * inverse.topLeftCorner(rows, rows);
-    EXPECT_LE((product - Eigen::MatrixXd::Identity(rows, rows)).norm(), 1e-6) << "trial " << trial;
+    const LaneWeights found = find_weight_basis(x, compliance);
+    for (int lane = 0; lane < kContactLanes; ++lane) {
+      const int rows = 2 + lane % 2;
+      const std::array<double, 3> d = {found.inverse.n[lane], found.inverse.u[lane], found.inverse.v[lane]};
+      Matrix3d weights = Matrix3d::Zero();
+      for (int k = 0; k < rows; ++k) {
+        const LaneVector& row = found.basis.row[k];
+        const Vector3d column(row.n[lane], row.u[lane], row.v[lane]);
+        weights += column * column.transpose() / d[k];
+      }
+      const Eigen::MatrixXd product =
+          weights.topLeftCorner(rows, rows) * inverse[lane].topLeftCorner(rows, rows);
+      EXPECT_LE((product - Eigen::MatrixXd::Identity(rows, rows)).norm(), 1e-6) << trial << ", " << lane;
+    }
   }
 }
 

@@ -1,0 +1,78 @@
+#include "solver/strategies/cone_lanes.h"
+
+#include <cstring>
+#include <utility>
+
+namespace cleave {
+namespace {
+
+// For choices lane by lane, which Eigen makes one after the other.
+using FourLanes [[gnu::vector_size(kContactLanes * sizeof(double))]] = double;
+
+FourLanes vector_of(const Lanes& lanes) {
+  FourLanes vector;
+  std::memcpy(&vector, lanes.data(), sizeof vector);
+  return vector;
+}
+
+Lanes lanes_of(const FourLanes& vector) {
+  Lanes lanes;
+  std::memcpy(lanes.data(), &vector, sizeof vector);
+  return lanes;
+}
+
+// A row of [X sqrt(C)] and of the unit matrix beside it, on which the same is done.
+struct ExtendedRow {
+  FourLanes y[6] = {}, unit[3] = {};
+
+  FourLanes dot(const ExtendedRow& other) const {
+    FourLanes sum = y[0] * other.y[0];
+    for (int i = 1; i < 6; ++i) sum += y[i] * other.y[i];
+    return sum;
+  }
+  void subtract(const FourLanes& share, const ExtendedRow& other) {
+    for (int i = 0; i < 6; ++i) y[i] -= share * other.y[i];
+    for (int i = 0; i < 3; ++i) unit[i] -= share * other.unit[i];
+  }
+};
+
+// Swaps in those lanes in which the second is the longer one.
+void longer_first(ExtendedRow& first, ExtendedRow& second) {
+  const auto is_longer = second.dot(second) > first.dot(first);
+  const auto sort = [&](FourLanes& a, FourLanes& b) {
+    const FourLanes former = a;
+    a = is_longer ? b : a;
+    b = is_longer ? former : b;
+  };
+  for (int i = 0; i < 6; ++i) sort(first.y[i], second.y[i]);
+  for (int i = 0; i < 3; ++i) sort(first.unit[i], second.unit[i]);
+}
+
+}  // namespace
+
+LaneWeights find_weight_basis(const LaneMatrix& x, const LaneVector& compliance) {
+  ExtendedRow rows[3];
+  for (int k = 0; k < 3; ++k) {
+    const LaneVector& row = x.row[k];
+    rows[k].y[0] = vector_of(row.n), rows[k].y[1] = vector_of(row.u), rows[k].y[2] = vector_of(row.v);
+    rows[k].unit[k] = FourLanes{} + 1.0;
+  }
+  rows[0].y[3] = vector_of(compliance.n.sqrt());
+  rows[1].y[4] = vector_of(compliance.u.sqrt());
+  rows[2].y[5] = vector_of(compliance.v.sqrt());
+  FourLanes d[3];
+  for (int k = 0; k < 3; ++k) {
+    for (int i = k + 1; i < 3; ++i) longer_first(rows[k], rows[i]);
+    d[k] = rows[k].dot(rows[k]);
+    for (int i = k + 1; i < 3; ++i) rows[i].subtract(rows[i].dot(rows[k]) / d[k], rows[k]);
+  }
+  LaneWeights weights;
+  weights.inverse = {lanes_of(d[0]), lanes_of(d[1]), lanes_of(d[2])};
+  for (int k = 0; k < 3; ++k) {
+    const FourLanes* unit = rows[k].unit;
+    weights.basis.row[k] = {lanes_of(unit[0]), lanes_of(unit[1]), lanes_of(unit[2])};
+  }
+  return weights;
+}
+
+}  // namespace cleave
