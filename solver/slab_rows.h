@@ -23,7 +23,8 @@ struct Octet {
   int body_a[kOctetLanes], body_b[kOctetLanes];  // for what does not move, a body that stands still
 };
 
-struct alignas(32) SlabBody {
+// In a cache line of its own: its neighbours may be those of another thread.
+struct alignas(64) SlabBody {
   float velocity[kOctetLanes] = {};  // and two zeros
 };
 
