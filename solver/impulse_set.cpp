@@ -86,17 +86,38 @@ void ImpulseSet::project(std::span<double> impulse) const {
         [&](const FrictionCone& cone) { cone.store(project_on_cone(cone.load(impulse), cone.mu), impulse); });
 }
 
+namespace {
+
+double cone_miss(const FrictionCone& cone, std::span<const double> d, std::span<const double> impulse,
+                 std::span<const double> w) {
+  return cone_residual(cone.mu, d[cone.first_row], cone.load(impulse), cone.load(w))
+      .cwiseAbs()
+      .maxCoeff<Eigen::PropagateNaN>();
+}
+
+}  // namespace
+
 double ImpulseSet::residual(int first, int last, std::span<const double> d, std::span<const double> impulse,
                             std::span<const double> w) const {
   double worst = 0;
   const auto of_rows = [&](int begin, int end) {
     worst = larger_or_nan(worst, interval_residual(*problem_, begin, end, d, impulse, w));
   };
-  visit(first, last, of_rows, [&](const FrictionCone& cone) {
-    const Eigen::Vector3d apart = cone_residual(cone.mu, d[cone.first_row], cone.load(impulse), cone.load(w));
-    worst = larger_or_nan(worst, apart.cwiseAbs().maxCoeff<Eigen::PropagateNaN>());
-  });
+  visit(first, last, of_rows,
+        [&](const FrictionCone& cone) { worst = larger_or_nan(worst, cone_miss(cone, d, impulse, w)); });
   return worst;
+}
+
+double ImpulseSet::energy(int first, int last, std::span<const double> d, std::span<const double> impulse,
+                          std::span<const double> w) const {
+  double sum = 0;
+  const auto add = [&](double miss, int row) { sum += miss * miss / d[row]; };
+  const auto of_rows = [&](int begin, int end) {
+    for (int r = begin; r < end; ++r) add(interval_residual(*problem_, r, r + 1, d, impulse, w), r);
+  };
+  visit(first, last, of_rows,
+        [&](const FrictionCone& cone) { add(cone_miss(cone, d, impulse, w), cone.first_row); });
+  return sum;
 }
 
 SetKind hardest_set(const StepProblem& problem) {

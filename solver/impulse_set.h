@@ -57,6 +57,9 @@ class ImpulseSet {
   // adds (shifted_slack). NaN where one is no number.
   double residual(int first, int last, std::span<const double> d, std::span<const double> impulse,
                   std::span<const double> w) const;
+  // The sum of F_r^2 / d_r, of the same rows and contacts, F_r being what residual() is the largest of.
+  double energy(int first, int last, std::span<const double> d, std::span<const double> impulse,
+                std::span<const double> w) const;
 
  private:
   template <class Rows, class Cone>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 namespace cleave {
@@ -11,7 +12,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kMostSteps = 8;
-constexpr double kLeastFall = 0.5;  // of the residual in a step that is worth the next
+constexpr double kLeastFall = 0.5;  // of the least residual in a step that is worth the next
 
 // Under Coulomb's law, where steps from afar change the energy little until the last few square it: given up where it does not
 // fall to this share in so many steps.
@@ -19,11 +20,25 @@ constexpr int kMostLawSteps = 30, kMostHalvings = 8, kMostSolves = 12;
 constexpr std::size_t kWatchedSteps = 3;
 constexpr double kLeastEnergyFall = 0.25;
 
-// By the least C_r / d_r, the residual in units of the velocity scale from where it was seen to converge: on piles of 60 to 600
-// rocks with cfm 1e-4 to 1e-14, attempts from ten times as much gained no factorisation or failed.
-constexpr double kSoftCompliance = 1e-4, kSoftResidual = 1e-6;
-constexpr double kFirmCompliance = 1e-9, kFirmResidual = 1e-8;
-constexpr double kRigidResidual = 1e-10;
+// By the least C_r / d_r: the residual in units of the velocity scale from where steps were seen to converge, and how many of
+// them in a row may bring no new least. On piles of 60 to 600 rocks with cfm 1e-4 to 1e-14 attempts from ten times as much gained
+// no factorisation. The first step may raise the residual a thousandfold before the next ones bring it down: to give up there
+// cost up to twice the factorisations where rows are soft.
+struct Attempt {
+  double least_compliance, first_residual;
+  int most_without_fall;
+};
+constexpr Attempt kAttempts[] = {  // the last one for all the rest
+    {1e-3, 1e-4, 3},
+    {1e-4, 1e-6, 2},
+    {1e-6, 1e-8, 2},
+    {1e-9, 1e-8, 1},
+    {0, 1e-10, 1}};
+
+const Attempt& attempt_at(double least_compliance) {
+  return *std::find_if(std::begin(kAttempts), std::end(kAttempts) - 1,
+                       [&](const Attempt& attempt) { return least_compliance >= attempt.least_compliance; });
+}
 
 // The derivative of the projection on a cone: orthonormal eigenvectors, of which a contact with one tangent has the first two,
 // and their eigenvalues.
@@ -111,15 +126,12 @@ bool ConeNewton::find_step(SolveState& state) {
   return true;
 }
 
-// The sum of d F^2, with the residual's rule of which rows are a contact's. Ranges are summed in their order.
+// Ranges are summed in their order.
 double ConeNewton::energy(SolveState& state) {
-  const std::span<const double> d = state.step->diagonal();
   range_energy_.assign(state.range_count(), 0.0);
   state.run_over_rows([&](int first, int last, int range) {
-    for (int r = first; r < last; ++r) {
-      const double residual = state.step->set().residual(r, r + 1, d, state.impulse, state.slack);
-      range_energy_[range] += residual * residual / d[r];
-    }
+    range_energy_[range] =
+        state.step->set().energy(first, last, state.step->diagonal(), state.impulse, state.slack);
   });
   return std::accumulate(range_energy_.begin(), range_energy_.end(), 0.0);
 }
@@ -140,9 +152,9 @@ void ConeNewton::take_step(SolveState& state) {
   energies_.push_back(after);
 }
 
-// Whether the step was worth the next.
-bool ConeNewton::falls(double before, double residual) {
-  if (!has_coulomb_) return residual < kLeastFall * before;
+// Whether the last steps were worth the next.
+bool ConeNewton::falls() const {
+  if (!has_coulomb_) return without_fall_ < most_without_fall_;
   const std::size_t count = energies_.size();
   if (!(energies_[count - 1] < energies_[count - 2])) return false;
   return count <= kWatchedSteps ||
@@ -150,9 +162,7 @@ bool ConeNewton::falls(double before, double residual) {
 }
 
 double ConeNewton::first_residual(double least_compliance) {
-  return least_compliance >= kSoftCompliance   ? kSoftResidual
-         : least_compliance >= kFirmCompliance ? kFirmResidual
-                                               : kRigidResidual;
+  return attempt_at(least_compliance).first_residual;
 }
 
 double ConeNewton::run(SolveState& state, double target) {
@@ -160,14 +170,17 @@ double ConeNewton::run(SolveState& state, double target) {
   state.update_shift();
   double least = state.residual_of_cones();
   best_impulse_ = state.impulse;
+  without_fall_ = 0;
+  most_without_fall_ = attempt_at(state.step->least_relative_compliance()).most_without_fall;
   energies_.reserve(kMostLawSteps + 1);
   energies_.assign(1, has_coulomb_ ? energy(state) : 0.0);
   const int most = has_coulomb_ ? kMostLawSteps : kMostSteps;
   for (int k = 0; k < most && least > target && find_step(state); ++k) {
     take_step(state);
-    const double residual = state.residual_of_cones(), before = least;
+    const double residual = state.residual_of_cones();
+    without_fall_ = residual < kLeastFall * least ? 0 : without_fall_ + 1;
     if (residual < least) least = residual, best_impulse_ = state.impulse;
-    if (!falls(before, residual)) break;
+    if (!falls()) break;
   }
   state.load(best_impulse_);
   return least;

@@ -44,15 +44,16 @@ class ConeNewton {
   bool find_step(SolveState& state);
   void take_step(SolveState& state);
   double energy(SolveState& state);
-  bool falls(double before, double residual);
+  bool falls() const;
   void linearize_rows(SolveState& state) const;
   void linearize_cone(SolveState& state, int k);
 
   bool has_coulomb_ = false;
   StepShift shift_;
-  std::vector<double> energies_;      // before every step and after the last; of Coulomb's law
-  std::vector<double> range_energy_;  // scratch
-  std::vector<double> wanted_;        // (m) on the rows of cones, w - d F / theta
+  int without_fall_ = 0, most_without_fall_ = 1;  // steps of a cone
+  std::vector<double> energies_;                  // before every step and after the last; of Coulomb's law
+  std::vector<double> range_energy_;              // scratch
+  std::vector<double> wanted_;                    // (m) on the rows of cones, w - d F / theta
   std::vector<double> impulse_before_, best_impulse_;  // (m)
 };
 
