@@ -58,7 +58,7 @@ class BlockMatrix {
   void assemble(const WeightedRows& rows);
   bool factor();
   int branch_count() const { return static_cast<int>(cholesky_.symbolic().branches().size()); }
-  // Of a whole step.
+  // Of a whole step: the bodies that are eliminated in a branch.
   std::span<const int> bodies_of(int branch) const {
     return std::span(branch_locals_)
         .subspan(branch_local_first_[branch], branch_local_first_[branch + 1] - branch_local_first_[branch]);

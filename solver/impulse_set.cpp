@@ -38,6 +38,13 @@ double interval_residual(const StepProblem& problem, int first, int last, std::s
   return worst;
 }
 
+double cone_miss(const FrictionCone& cone, std::span<const double> d, std::span<const double> impulse,
+                 std::span<const double> w) {
+  return cone_residual(cone.mu, d[cone.first_row], cone.load(impulse), cone.load(w))
+      .cwiseAbs()
+      .maxCoeff<Eigen::PropagateNaN>();
+}
+
 }  // namespace
 
 void ImpulseSet::bind(const StepProblem& problem) {
@@ -85,17 +92,6 @@ void ImpulseSet::project(std::span<double> impulse) const {
   visit(0, static_cast<int>(impulse.size()), clamp,
         [&](const FrictionCone& cone) { cone.store(project_on_cone(cone.load(impulse), cone.mu), impulse); });
 }
-
-namespace {
-
-double cone_miss(const FrictionCone& cone, std::span<const double> d, std::span<const double> impulse,
-                 std::span<const double> w) {
-  return cone_residual(cone.mu, d[cone.first_row], cone.load(impulse), cone.load(w))
-      .cwiseAbs()
-      .maxCoeff<Eigen::PropagateNaN>();
-}
-
-}  // namespace
 
 double ImpulseSet::residual(int first, int last, std::span<const double> d, std::span<const double> impulse,
                             std::span<const double> w) const {

@@ -23,7 +23,7 @@ constexpr double kLeastEnergyFall = 0.25;
 // By the least C_r / d_r: the residual in units of the velocity scale from where steps were seen to converge, and how many of
 // them in a row may bring no new least. On piles of 60 to 600 rocks with cfm 1e-4 to 1e-14 attempts from ten times as much gained
 // no factorisation. The first step may raise the residual a thousandfold before the next ones bring it down: to give up there
-// cost up to twice the factorisations where rows are soft.
+// cost up to three quarters more factorisations where rows are soft.
 struct Attempt {
   double least_compliance, first_residual;
   int most_without_fall;
