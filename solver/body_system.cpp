@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "solver/group_products.h"
-
 namespace cleave {
 
 void BodySystem::bind(const PreparedStep& step, std::span<const int> position) {
@@ -12,9 +10,9 @@ void BodySystem::bind(const PreparedStep& step, std::span<const int> position) {
   group_sums_.resize(12 * step.groups().size());
 }
 
-void BodySystem::load(const RowGroup& group, std::span<const double> x, double* both) const {
-  load_pair(x.data() + place(group.body_a), group.body_b < 0 ? nullptr : x.data() + place(group.body_b),
-            both);
+inline BodyPair BodySystem::load(const RowGroup& group, std::span<const double> x) const {
+  return load_pair(x.data() + place(group.body_a),
+                   group.body_b < 0 ? nullptr : x.data() + place(group.body_b));
 }
 
 void BodySystem::weigh(const Chunk& groups, std::span<const double> f_r) {
@@ -30,8 +28,8 @@ void BodySystem::weigh(const Chunk& groups, std::span<const double> f_r) {
 void BodySystem::weigh_product(const Chunk& groups, std::span<const double> x) {
   const std::span<const double> d = rows_.d();
   for (int g = groups.first; g < groups.last; ++g) {
-    double both[12], sum[12];
-    load(step_->groups()[g], x, both);
+    const BodyPair both = load(step_->groups()[g], x);
+    double sum[12];
     sum_rows(
         step_->groups()[g], rows_.jacobian(),
         [&](int r) { return d[r] * row_times(rows_.jacobian() + 12L * r, both); }, sum);
@@ -70,8 +68,7 @@ void BodySystem::expand(const Chunk& groups, std::span<const double> x, std::spa
   const std::span<const double> d = rows_.d();
   for (int g = groups.first; g < groups.last; ++g) {
     const RowGroup& group = step_->groups()[g];
-    double both[12];
-    load(group, x, both);
+    const BodyPair both = load(group, x);
     for (int r = group.first_row; r < group.first_row + group.row_count; ++r)
       dlambda[r] = d[r] * (f_r[r] - row_times(rows_.jacobian() + 12L * r, both));
   }

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/group_products.h"
 #include "solver/prepared_step.h"
 #include "solver/row_weights.h"
 
@@ -18,8 +19,12 @@ class BodySystem {
  public:
   // position: where a body stands in the vectors that are solved for, x; empty: as in the problem. Both must stay.
   void bind(const PreparedStep& step, std::span<const int> position = {});
-  // As RowWeights, the arrays must stay where they are.
+  // As RowWeights, the arrays must stay where they are. turn() of all groups comes after it.
   void set(const RowWeights& weights) { rows_.set(step_->problem(), weights); }
+  void turn(const Chunk& groups) {
+    const auto [first, last] = step_->rows_of(groups);
+    rows_.turn(first, last);
+  }
   const WeightedRows& rows() const { return rows_; }
 
   // Sums of J'^T D f_r by group, f_r (m).
@@ -40,7 +45,7 @@ class BodySystem {
 
  private:
   long place(int body) const { return 6L * (position_.empty() ? body : position_[body]); }
-  void load(const RowGroup& group, std::span<const double> x, double* both) const;
+  BodyPair load(const RowGroup& group, std::span<const double> x) const;
   void collect_body(int body, std::span<const double> f_v, std::span<double> x) const;
 
   const PreparedStep* step_ = nullptr;

@@ -82,6 +82,8 @@ bool CarriedFactor::pays_to_factor() const {
 bool CarriedFactor::factor(const RowWeights& weights, ParallelTasks& tasks) {
   blocks_.assign(weights.blocks.begin(), weights.blocks.end());
   system_.set({weights.d, blocks_});
+  if (!blocks_.empty())
+    tasks.run_over(step_->group_chunks(), [&](const Chunk& groups) { system_.turn(groups); });
   if (!has_factor_ || pays_to_factor()) return factor_anew(tasks);
   is_own_ = false;
   ++counts_.factor_reuses;

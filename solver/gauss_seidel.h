@@ -23,7 +23,7 @@ void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double>
 // w_r with J_r u summed in lanes. u (12): velocities of the row's two bodies.
 struct LaneSlack {
   double operator()(const StepProblem& problem, int row, const double* u, double impulse) const {
-    return row_times(problem.jacobian.data() + 12L * row, u) + problem.compliance[row] * impulse -
+    return row_times(problem.jacobian.data() + 12L * row, load_pair(u)) + problem.compliance[row] * impulse -
            problem.rhs[row];
   }
 };

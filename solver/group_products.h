@@ -29,24 +29,33 @@ inline void add_sides(std::span<const int> sides, const double* group_sums, cons
   std::copy_n(sum, 6, total);
 }
 
-// both (12): velocities of the two bodies of a group; b is nullptr for static.
-inline void load_pair(const double* a, const double* b, double* both) {
-  std::copy_n(a, 6, both);
-  if (b != nullptr) {
-    std::copy_n(b, 6, both + 6);
-  } else {
-    std::fill_n(both + 6, 6, 0.0);
-  }
+using FourLanes [[gnu::vector_size(4 * sizeof(double))]] = double;
+
+// Velocities of the two bodies of a group (12), put together in registers: read as vectors right after they were copied
+// number by number, they would wait for memory. b is nullptr for static.
+struct BodyPair {
+  FourLanes part[3];
+};
+
+inline BodyPair load_pair(const double* a, const double* b) {
+  static constexpr double kStatic[6] = {};
+  if (b == nullptr) b = kStatic;
+  return {{FourLanes{a[0], a[1], a[2], a[3]}, FourLanes{a[4], a[5], b[0], b[1]},
+           FourLanes{b[2], b[3], b[4], b[5]}}};
+}
+
+// Of velocities that stand one after the other.
+inline BodyPair load_pair(const double* both) {
+  const auto four = [&](int c) { return FourLanes{both[c], both[c + 1], both[c + 2], both[c + 3]}; };
+  return {{four(0), four(4), four(8)}};
 }
 
 // Summed in four lanes, as a vector: the compiler makes scalar instructions of the same loops.
-inline double row_times(const double* row, const double* both) {
-  using FourLanes [[gnu::vector_size(4 * sizeof(double))]] = double;
+inline double row_times(const double* row, const BodyPair& both) {
   FourLanes sum = {};
-  for (int c = 0; c < 12; c += 4) {
-    const FourLanes a = {row[c], row[c + 1], row[c + 2], row[c + 3]};
-    const FourLanes b = {both[c], both[c + 1], both[c + 2], both[c + 3]};
-    sum += a * b;
+  for (int k = 0; k < 3; ++k) {
+    const FourLanes a = {row[4 * k], row[4 * k + 1], row[4 * k + 2], row[4 * k + 3]};
+    sum += a * both.part[k];
   }
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }

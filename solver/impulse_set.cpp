@@ -4,6 +4,8 @@
 #include <cmath>
 #include <sstream>
 
+#include "solver/cone_lanes.h"
+
 namespace cleave {
 namespace {
 
@@ -38,11 +40,16 @@ double interval_residual(const StepProblem& problem, int first, int last, std::s
   return worst;
 }
 
-double cone_miss(const FrictionCone& cone, std::span<const double> d, std::span<const double> impulse,
-                 std::span<const double> w) {
-  return cone_residual(cone.mu, d[cone.first_row], cone.load(impulse), cone.load(w))
-      .cwiseAbs()
-      .maxCoeff<Eigen::PropagateNaN>();
+// visit(misses, d) for the contacts, four at a time: the lanes of ContactLanes.
+template <class Visit>
+void visit_cone_misses(std::span<const FrictionCone> cones, std::span<const double> d,
+                       std::span<const double> impulse, std::span<const double> w, const Visit& visit) {
+  while (!cones.empty()) {
+    const ContactLanes four(cones);
+    const Lanes of_four = four.load_normal(d);
+    visit(largest_cone_residual(four.mu, of_four, four.load(impulse), four.load(w)), of_four);
+    cones = cones.subspan(four.count);
+  }
 }
 
 }  // namespace
@@ -69,51 +76,47 @@ std::span<const double> ImpulseSet::in_rows(std::span<const double> x, std::vect
   return scratch;
 }
 
-// visit_rows(first, last) for runs of rows with an interval each, visit_cone(cone) between them.
-template <class Rows, class Cone>
-void ImpulseSet::visit(int first, int last, const Rows& visit_rows, const Cone& visit_cone) const {
-  const auto end_of = [](const FrictionCone& cone) { return cone.first_row + cone.row_count; };
-  auto cone = std::ranges::upper_bound(cones_, first, {}, end_of);
-  int row = first;
-  for (; cone != cones_.end() && cone->first_row < last; ++cone) {
-    if (cone->first_row > row) visit_rows(row, cone->first_row);
-    if (cone->first_row >= first) visit_cone(*cone);
-    row = end_of(*cone);
-  }
-  if (row < last) visit_rows(row, last);
+std::span<const FrictionCone> ImpulseSet::cones_of(int first, int last) const {
+  const auto begin = std::ranges::lower_bound(cones_, first, {}, &FrictionCone::first_row);
+  return {begin, std::ranges::lower_bound(begin, cones_.end(), last, {}, &FrictionCone::first_row)};
 }
 
 void ImpulseSet::project(std::span<double> impulse) const {
-  const auto clamp = [&](int first, int last) {
+  visit_intervals(0, static_cast<int>(impulse.size()), [&](int first, int last) {
     for (int r = first; r < last; ++r) {
       impulse[r] = std::clamp(impulse[r], problem_->lower[r], problem_->upper[r]);
     }
-  };
-  visit(0, static_cast<int>(impulse.size()), clamp,
-        [&](const FrictionCone& cone) { cone.store(project_on_cone(cone.load(impulse), cone.mu), impulse); });
+  });
+  for (const FrictionCone& cone : cones_) cone.store(project_on_cone(cone.load(impulse), cone.mu), impulse);
 }
 
 double ImpulseSet::residual(int first, int last, std::span<const double> d, std::span<const double> impulse,
                             std::span<const double> w) const {
   double worst = 0;
-  const auto of_rows = [&](int begin, int end) {
+  visit_intervals(first, last, [&](int begin, int end) {
     worst = larger_or_nan(worst, interval_residual(*problem_, begin, end, d, impulse, w));
-  };
-  visit(first, last, of_rows,
-        [&](const FrictionCone& cone) { worst = larger_or_nan(worst, cone_miss(cone, d, impulse, w)); });
+  });
+  visit_cone_misses(cones_of(first, last), d, impulse, w, [&](const Lanes& misses, const Lanes&) {
+    worst = larger_or_nan(worst, misses.maxCoeff<Eigen::PropagateNaN>());
+  });
   return worst;
 }
 
-double ImpulseSet::energy(int first, int last, std::span<const double> d, std::span<const double> impulse,
-                          std::span<const double> w) const {
-  double sum = 0;
-  const auto add = [&](double miss, int row) { sum += miss * miss / d[row]; };
-  const auto of_rows = [&](int begin, int end) {
-    for (int r = begin; r < end; ++r) add(interval_residual(*problem_, r, r + 1, d, impulse, w), r);
-  };
-  visit(first, last, of_rows,
-        [&](const FrictionCone& cone) { add(cone_miss(cone, d, impulse, w), cone.first_row); });
-  return sum;
+ImpulseSet::Misses ImpulseSet::misses(int first, int last, std::span<const double> d,
+                                      std::span<const double> impulse, std::span<const double> w) const {
+  Misses all;
+  visit_intervals(first, last, [&](int begin, int end) {
+    for (int r = begin; r < end; ++r) {
+      const double miss = interval_residual(*problem_, r, r + 1, d, impulse, w);
+      all.largest = larger_or_nan(all.largest, miss);
+      all.energy += miss * miss / d[r];
+    }
+  });
+  visit_cone_misses(cones_of(first, last), d, impulse, w, [&](const Lanes& misses, const Lanes& of_four) {
+    all.largest = larger_or_nan(all.largest, misses.maxCoeff<Eigen::PropagateNaN>());
+    all.energy += (misses * misses / of_four).sum();
+  });
+  return all;
 }
 
 SetKind hardest_set(const StepProblem& problem) {

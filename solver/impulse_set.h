@@ -38,6 +38,11 @@ class ImpulseSet {
 
   // Of every contact whose set is no box, ascending.
   std::span<const FrictionCone> cones() const { return cones_; }
+  // Those whose normal is one of the rows first .. last - 1.
+  std::span<const FrictionCone> cones_of(int first, int last) const;
+  // visit(first, last) for the runs of rows that belong to no cone.
+  template <class Visit>
+  void visit_intervals(int first, int last, const Visit& visit) const;
   // Whether one of them follows Coulomb's law.
   bool has_coulomb() const { return std::ranges::any_of(cones_, &FrictionCone::coulomb); }
   // Whether a contact's weights are a block (row_weights.h).
@@ -57,18 +62,31 @@ class ImpulseSet {
   // adds (shifted_slack). NaN where one is no number.
   double residual(int first, int last, std::span<const double> d, std::span<const double> impulse,
                   std::span<const double> w) const;
-  // The sum of F_r^2 / d_r, of the same rows and contacts, F_r being what residual() is the largest of.
-  double energy(int first, int last, std::span<const double> d, std::span<const double> impulse,
+  // The same, and the sum of F_r^2 / d_r of the rows and contacts, F_r being what residual() is the largest of.
+  struct Misses {
+    double largest = 0;  // m/s
+    double energy = 0;   // J
+  };
+  Misses misses(int first, int last, std::span<const double> d, std::span<const double> impulse,
                 std::span<const double> w) const;
 
  private:
-  template <class Rows, class Cone>
-  void visit(int first, int last, const Rows& visit_rows, const Cone& visit_cone) const;
-
   const StepProblem* problem_ = nullptr;
   std::vector<WeightBlock> axes_;
   std::vector<FrictionCone> cones_;
 };
+
+template <class Visit>
+void ImpulseSet::visit_intervals(int first, int last, const Visit& visit) const {
+  const auto end_of = [](const FrictionCone& cone) { return cone.first_row + cone.row_count; };
+  auto cone = std::ranges::upper_bound(cones_, first, {}, end_of);
+  int row = first;
+  for (; cone != cones_.end() && cone->first_row < last; ++cone) {
+    if (cone->first_row > row) visit(row, cone->first_row);
+    row = end_of(*cone);
+  }
+  if (row < last) visit(row, last);
+}
 
 // The sets that an algorithm takes; one that takes a kind takes those before it.
 enum class SetKind { intervals, turned_boxes, cones };

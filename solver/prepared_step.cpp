@@ -173,8 +173,8 @@ void PreparedStep::jacobian_times(const Chunk& chunk, std::span<const double> v,
                                   std::span<double> out) const {
   for (int i = chunk.first; i < chunk.last; ++i) {
     const RowGroup& g = groups_[i];
-    double both[12];
-    load_pair(v.data() + 6L * g.body_a, g.body_b < 0 ? nullptr : v.data() + 6L * g.body_b, both);
+    const BodyPair both =
+        load_pair(v.data() + 6L * g.body_a, g.body_b < 0 ? nullptr : v.data() + 6L * g.body_b);
     for (int r = g.first_row; r < g.first_row + g.row_count; ++r)
       out[r] = row_times(problem_->jacobian.data() + 12L * r, both);
   }

@@ -35,8 +35,9 @@ struct RowWeights {
       : d(row_weights), blocks(weight_blocks) {}
   RowWeights(const std::vector<double>& row_weights) : d(row_weights) {}
 
-  std::span<const double> d;            // (m) >= 0; on the rows of a block, of the columns of its basis
-  std::span<const WeightBlock> blocks;  // disjoint; rows outside of them are scalar
+  std::span<const double> d;  // (m) >= 0; on the rows of a block, of the columns of its basis
+  // Disjoint; ascending, or two such runs, as turned boxes and then cones. Rows outside of them are scalar.
+  std::span<const WeightBlock> blocks;
 };
 
 // x (m) <- B^T x and x <- B x on the rows of the blocks.
@@ -46,7 +47,10 @@ void from_basis(std::span<const WeightBlock> blocks, std::span<double> x);
 // The rows of a problem as a kernel sees them under given weights. Without blocks nothing is copied.
 class WeightedRows {
  public:
+  // All of J' is then to be made by turn().
   void set(const StepProblem& problem, const RowWeights& weights);
+  // Makes J' of the rows first .. last - 1, which end no block; calls for other rows may run beside it.
+  void turn(int first, int last);
 
   std::span<const double> d() const { return d_; }
   const double* jacobian() const { return jacobian_; }  // (m, 12) J'
@@ -56,6 +60,8 @@ class WeightedRows {
  private:
   std::span<const double> d_;
   std::span<const WeightBlock> blocks_;
+  std::span<const WeightBlock> runs_[2];  // of blocks_
+  const StepProblem* problem_ = nullptr;
   const double* jacobian_ = nullptr;
   std::vector<double> turned_jacobian_;
 };

@@ -105,8 +105,9 @@ void SplitSweep::sweep_group(int group, std::span<double> impulse) {
   double* of_a = u_.data() + 6L * copy_a_[group];
   double* of_b = g.body_b < 0 ? nullptr : u_.data() + 6L * copy_b_[group];
   const double copies[2] = {double(copies_of(g.body_a)), g.body_b < 0 ? 1.0 : double(copies_of(g.body_b))};
-  double both[12];
-  load_pair(of_a, of_b, both);
+  double both[12] = {};
+  std::copy_n(of_a, 6, both);
+  if (of_b != nullptr) std::copy_n(of_b, 6, both + 6);
   for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
     const double old = impulse[r];
     const double w = LaneSlack{}(problem, r, both, old);

@@ -86,15 +86,18 @@ void BranchKernel::list_substitution() {
   substitution_graph_.build(2 * count, waits_, places_);
 }
 
-// Rows in blocks are turned by their bases too, so that equal weights do not say that nothing has changed.
+// With the rows that the weights turn, in one pass. Rows in blocks are turned by their bases too, so that equal weights do not say
+// that nothing has changed.
 void BranchKernel::find_changed(const RowWeights& weights, ParallelTasks& tasks) {
   const long preparation = step_->preparations();
   const bool is_new = std::exchange(factored_preparation_, preparation) != preparation;
   const bool all =
       std::exchange(changed_all_, true) || is_new;  // true until this factorisation has succeeded
   std::ranges::fill(changed_, all);
-  tasks.run_over(step_->group_chunks(),
-                 [&](const Chunk& groups) { matrix_.take_weights(weights.d, groups, changed_); });
+  tasks.run_over(step_->group_chunks(), [&](const Chunk& groups) {
+    system_.turn(groups);
+    matrix_.take_weights(weights.d, groups, changed_);
+  });
   const auto branches = matrix_.cholesky().symbolic().branches();
   for (std::size_t b = 0; b < branches.size(); ++b)
     if (changed_[b] && branches[b].parent >= 0) changed_[branches[b].parent] = 1;

@@ -31,19 +31,6 @@ void store_basis(const LaneWeights& weights, int lane, double* basis) {
 
 }  // namespace
 
-LaneVector ConeBarrier::Contacts::load(std::span<const double> x) const {
-  LaneVector lanes;
-  for (int lane = 0; lane < count; ++lane) {
-    const Vector3d value = cone[lane]->load(x);
-    lanes.n[lane] = value[0], lanes.u[lane] = value[1], lanes.v[lane] = value[2];
-  }
-  return lanes;
-}
-
-void ConeBarrier::Contacts::store(const LaneVector& lanes, std::span<double> x) const {
-  for (int lane = 0; lane < count; ++lane) cone[lane]->store(at(lanes, lane), x);
-}
-
 // task(contacts, k, range) for all contacts, four at a time, in the ranges of their normal rows.
 template <class Task>
 void ConeBarrier::run_over_contacts(SolveState& state, const Task& task) const {
@@ -54,26 +41,17 @@ void ConeBarrier::run_over_contacts(SolveState& state, const Task& task) const {
 }
 
 void ConeBarrier::list_contacts(const SolveState& state) {
-  const std::span<const FrictionCone> cones = state.step->set().cones();
+  const ImpulseSet& set = state.step->set();
   contacts_.clear();
   contacts_first_.clear();
-  std::size_t first = 0;
   for (int range = 0; range < state.range_count(); ++range) {
     contacts_first_.push_back(static_cast<int>(contacts_.size()));
-    const int last_row = (range + 1) * state.rows_of_a_range();
-    while (first < cones.size() && cones[first].first_row < last_row) {
-      Contacts four;
-      while (four.count < kContactLanes && first < cones.size() && cones[first].first_row < last_row) {
-        four.mu[four.count] = cones[first].mu;
-        four.is_there[four.count] = 1;
-        four.second_tangent[four.count] = cones[first].row_count == 3 ? 1 : 0;
-        four.cone[four.count++] = &cones[first++];
-      }
-      contacts_.push_back(four);
-    }
+    const int first_row = range * state.rows_of_a_range();
+    auto cones = set.cones_of(first_row, first_row + state.rows_of_a_range());
+    for (; !cones.empty(); cones = cones.subspan(contacts_.back().count)) contacts_.emplace_back(cones);
   }
   contacts_first_.push_back(static_cast<int>(contacts_.size()));
-  count_ = cones.size();
+  count_ = set.cones().size();
 }
 
 void ConeBarrier::start(SolveState& state, std::span<const double> speed) {
@@ -84,12 +62,8 @@ void ConeBarrier::start(SolveState& state, std::span<const double> speed) {
   now_.resize(contacts_.size());
   kept_.resize(contacts_.size());
   is_kept_ = false;
-  run_over_contacts(state, [&](const Contacts& four, int k, int) {
-    Lanes least = Lanes::Ones(), d = Lanes::Ones();
-    for (int lane = 0; lane < four.count; ++lane) {
-      least[lane] = speed[four.cone[lane]->first_row];
-      d[lane] = state.step->diagonal()[four.cone[lane]->first_row];
-    }
+  run_over_contacts(state, [&](const ContactLanes& four, int k, int) {
+    const Lanes least = four.load_normal(speed), d = four.load_normal(state.step->diagonal());
     Point& point = point_[k];
     point.s = inside(to_second_order(four.mu, four.load(state.impulse)), least / d);
     LaneVector z = four.load(state.slack);
@@ -105,7 +79,7 @@ void ConeBarrier::start(SolveState& state, std::span<const double> speed) {
 void ConeBarrier::weigh(SolveState& state, std::span<double> inverse_weight) {
   const std::span<WeightBlock> blocks = state.cone_blocks();
   const FrictionCone* first = state.step->set().cones().data();
-  run_over_contacts(state, [&](const Contacts& four, int k, int) {
+  run_over_contacts(state, [&](const ContactLanes& four, int k, int) {
     const Point& point = point_[k];
     const LaneVector gap = to_second_order(four.mu, four.load(state.impulse)) - point.s;
     scaled_gap_[k] = transposed_times(point.w_inverse, four.is_there * gap);
@@ -116,7 +90,7 @@ void ConeBarrier::weigh(SolveState& state, std::span<double> inverse_weight) {
     const LaneWeights weights = find_weight_basis(x, compliance_[k]);
     four.store(weights.inverse, inverse_weight);
     for (int lane = 0; lane < four.count; ++lane) {
-      WeightBlock& block = blocks[four.cone[lane] - first];
+      WeightBlock& block = blocks[four.cone + lane - first];
       const auto store = block.row_count == 3 ? store_basis<3> : store_basis<2>;
       store(weights, lane, block.basis.data());
     }
@@ -124,7 +98,7 @@ void ConeBarrier::weigh(SolveState& state, std::span<double> inverse_weight) {
 }
 
 void ConeBarrier::aim(SolveState& state, double product, bool second_order) {
-  run_over_contacts(state, [&](const Contacts& four, int k, int) {
+  run_over_contacts(state, [&](const ContactLanes& four, int k, int) {
     const LaneVector& l = point_[k].by.l;
     Direction& now = now_[k];
     now.c = LaneVector{.n = Lanes::Constant(product)} - jordan_product(l, l);
@@ -135,7 +109,7 @@ void ConeBarrier::aim(SolveState& state, double product, bool second_order) {
 }
 
 void ConeBarrier::add_to_right_hand_side(SolveState& state) const {
-  run_over_contacts(state, [&](const Contacts& four, int k, int) {
+  run_over_contacts(state, [&](const ContactLanes& four, int k, int) {
     const LaneVector scaled = point_[k].by.l + now_[k].q - scaled_gap_[k];
     const LaneVector of_rows = to_second_order(four.mu, point_[k].w_inverse * scaled);
     four.store(four.load(state.f_r) + of_rows, state.f_r);
@@ -144,7 +118,7 @@ void ConeBarrier::add_to_right_hand_side(SolveState& state) const {
 
 BarrierCourse ConeBarrier::follow(SolveState& state) {
   courses_.assign(state.range_count(), BarrierCourse{});
-  run_over_contacts(state, [&](const Contacts& four, int k, int range) {
+  run_over_contacts(state, [&](const ContactLanes& four, int k, int range) {
     const Point& point = point_[k];
     Direction& now = now_[k];
     now.ds = transposed_times(point.w_inverse, to_second_order(four.mu, four.load(state.dlambda))) +
@@ -163,17 +137,17 @@ BarrierCourse ConeBarrier::follow(SolveState& state) {
 // There w = S (z + dz), as the direction solves the equation in w.
 void ConeBarrier::predict_shift(SolveState& state, std::span<double> shift) const {
   const FrictionCone* first = state.step->set().cones().data();
-  run_over_contacts(state, [&](const Contacts& four, int k, int) {
+  run_over_contacts(state, [&](const ContactLanes& four, int k, int) {
     const Lanes speed = four.mu * tangential(point_[k].w_inverse * (point_[k].by.l + now_[k].dz));
     for (int lane = 0; lane < four.count; ++lane)
-      shift[four.cone[lane] - first] = four.cone[lane]->coulomb ? speed[lane] : 0.0;
+      shift[four.cone + lane - first] = four.cone[lane].coulomb ? speed[lane] : 0.0;
   });
 }
 
 void ConeBarrier::correct(SolveState& state, double trial, double low, double high) {
   before_.resize(now_.size());
   now_.swap(before_);
-  run_over_contacts(state, [&](const Contacts& four, int k, int) {
+  run_over_contacts(state, [&](const ContactLanes& four, int k, int) {
     const LaneVector& l = point_[k].by.l;
     const Direction& before = before_[k];
     Direction& now = now_[k];
@@ -188,7 +162,7 @@ void ConeBarrier::advance(SolveState& state, double step) {
   const bool leaves = std::exchange(is_kept_, false);
   if (leaves) point_.swap(kept_);
   const std::vector<Point>& from = leaves ? kept_ : point_;
-  run_over_contacts(state, [&](const Contacts&, int k, int) {
+  run_over_contacts(state, [&](const ContactLanes&, int k, int) {
     const Point& old = from[k];
     Point& point = point_[k];
     const Lanes share = Lanes::Constant(step);
@@ -209,7 +183,7 @@ void ConeBarrier::restore() {
 double ConeBarrier::rounding(SolveState& state, std::span<const double> row_velocity) {
   if (contacts_.empty()) return 0;
   worst_.assign(state.range_count(), 0.0);
-  run_over_contacts(state, [&](const Contacts& four, int k, int range) {
+  run_over_contacts(state, [&](const ContactLanes& four, int k, int range) {
     const LaneVector dlambda = four.load(state.dlambda), &c = compliance_[k];
     const LaneMatrix& inverse = point_[k].w_inverse;
     const LaneVector scaled = transposed_times(inverse, to_second_order(four.mu, dlambda));

@@ -26,8 +26,8 @@
 #include <span>
 #include <vector>
 
+#include "solver/cone_lanes.h"
 #include "solver/solve_state.h"
-#include "solver/strategies/cone_lanes.h"
 #include "solver/strategies/interior_constants.h"
 #include "solver/strategies/interval_barrier.h"
 
@@ -60,14 +60,6 @@ class ConeBarrier {
   std::size_t product_count() const { return count_; }
 
  private:
-  struct Contacts {
-    LaneVector load(std::span<const double> x) const;  // zero in the other lanes
-    void store(const LaneVector& lanes, std::span<double> x) const;
-
-    const FrictionCone* cone[kContactLanes] = {};
-    int count = 0;
-    Lanes mu = Lanes::Ones(), is_there = Lanes::Zero(), second_tangent = Lanes::Zero();
-  };
   struct Point {
     LaneMatrix w, w_inverse;
     LaneDivisor by;  // l
@@ -81,7 +73,7 @@ class ConeBarrier {
   template <class Task>
   void run_over_contacts(SolveState& state, const Task& task) const;
 
-  std::vector<Contacts> contacts_;
+  std::vector<ContactLanes> contacts_;
   std::vector<int> contacts_first_;  // (ranges + 1) of SolveState::run_over_rows, by their normal rows
   std::size_t count_ = 0;            // of cones
   std::vector<Point> point_, kept_;

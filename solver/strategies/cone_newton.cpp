@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <numeric>
+#include <limits>
 
 namespace cleave {
 namespace {
@@ -29,11 +29,11 @@ struct Attempt {
   int most_without_fall;
 };
 constexpr Attempt kAttempts[] = {  // the last one for all the rest
-    {1e-3, 1e-4, 3},
+    {1e-3, 1e-3, 3},
     {1e-4, 1e-6, 2},
     {1e-6, 1e-8, 2},
     {1e-9, 1e-8, 1},
-    {0, 1e-10, 1}};
+    {0, 1e-9, 1}};
 
 const Attempt& attempt_at(double least_compliance) {
   return *std::find_if(std::begin(kAttempts), std::end(kAttempts) - 1,
@@ -66,23 +66,21 @@ Derivative differentiate(double mu, const Vector3d& p) {
 }  // namespace
 
 // Weights of rows with bounds; theta = 0 sets the impulse to its bound. The rows of cones are linearize_cone's.
-void ConeNewton::linearize_rows(SolveState& state) const {
+void ConeNewton::linearize_rows(SolveState& state, int first, int last) const {
   const StepProblem& problem = state.step->problem();
   const std::span<const double> d = state.step->diagonal();
-  state.run_over_rows([&](int first, int last, int) {
-    for (int r = first; r < last; ++r) {
-      const double p = state.impulse[r] - state.slack[r] / d[r];
-      const bool is_free = problem.lower[r] < p && p < problem.upper[r];
-      state.weight[r] = is_free ? 1 / std::max(problem.compliance[r], kFactoredCompliance * d[r]) : 0.0;
-      if (!is_free) state.impulse[r] = std::clamp(p, problem.lower[r], problem.upper[r]);
-    }
-  });
+  for (int r = first; r < last; ++r) {
+    const double p = state.impulse[r] - state.slack[r] / d[r];
+    const bool is_free = problem.lower[r] < p && p < problem.upper[r];
+    state.weight[r] = is_free ? 1 / std::max(problem.compliance[r], kFactoredCompliance * d[r]) : 0.0;
+    if (!is_free) state.impulse[r] = std::clamp(p, problem.lower[r], problem.upper[r]);
+  }
 }
 
-void ConeNewton::linearize_cone(SolveState& state, int k) {
-  const FrictionCone& cone = state.step->set().cones()[k];
+void ConeNewton::linearize_cone(SolveState& state, const FrictionCone& cone) {
+  const std::ptrdiff_t k = &cone - state.step->set().cones().data();
   const double d = state.step->diagonal()[cone.first_row];
-  const Vector3d impulse = cone.load(impulse_before_), slack = cone.load(state.slack);
+  const Vector3d impulse = cone.load(impulse_before_), slack = cone.load(slack_before_);
   const Vector3d compliance = cone.load(state.step->problem().compliance);
   const Vector3d apart = cone_residual(cone.mu, d, impulse, slack);
   const Derivative at = differentiate(cone.mu, impulse - slack / d);
@@ -106,14 +104,23 @@ void ConeNewton::linearize_cone(SolveState& state, int k) {
 
 // The impulses after a full step. False where the kernel finds a non-positive pivot.
 bool ConeNewton::find_step(SolveState& state) {
-  const std::span<const FrictionCone> cones = state.step->set().cones();
+  const ImpulseSet& set = state.step->set();
   wanted_.assign(state.impulse.size(), 0.0);
   impulse_before_ = state.impulse;
-  if (has_coulomb_) shift_.begin(state, state.slack);
-  linearize_rows(state);
-  for (int k = 0; k < std::ssize(cones); ++k) linearize_cone(state, k);
+  slack_before_ = state.slack;
+  state.run_over_rows([&](int first, int last, int) {
+    set.visit_intervals(first, last, [&](int begin, int end) { linearize_rows(state, begin, end); });
+    for (const FrictionCone& cone : set.cones_of(first, last)) linearize_cone(state, cone);
+  });
   state.update_velocity();
   if (!state.factor()) return false;
+  solve(state);
+  for (std::size_t r = 0; r < wanted_.size(); ++r) state.impulse[r] += state.dlambda[r];
+  return true;
+}
+
+void ConeNewton::solve(SolveState& state) {
+  if (has_coulomb_) shift_.begin(state, slack_before_);
   std::ranges::fill(state.f_v, 0.0);
   for (int k = 0; k < kMostSolves; ++k) {
     for (std::size_t r = 0; r < wanted_.size(); ++r) state.f_r[r] = wanted_[r] - state.slack[r];
@@ -122,34 +129,37 @@ bool ConeNewton::find_step(SolveState& state) {
     ++state.summary->refinements;
     if (!has_coulomb_ || shift_.is_matched(state)) break;
   }
-  for (std::size_t r = 0; r < wanted_.size(); ++r) state.impulse[r] += state.dlambda[r];
-  return true;
 }
 
 // Ranges are summed in their order.
-double ConeNewton::energy(SolveState& state) {
-  range_energy_.assign(state.range_count(), 0.0);
+ImpulseSet::Misses ConeNewton::misses(SolveState& state) {
+  range_misses_.resize(state.range_count());
   state.run_over_rows([&](int first, int last, int range) {
-    range_energy_[range] =
-        state.step->set().energy(first, last, state.step->diagonal(), state.impulse, state.slack);
+    range_misses_[range] =
+        state.step->set().misses(first, last, state.step->diagonal(), state.impulse, state.slack);
   });
-  return std::accumulate(range_energy_.begin(), range_energy_.end(), 0.0);
+  ImpulseSet::Misses all;
+  for (const ImpulseSet::Misses& of_range : range_misses_) {
+    if (!(of_range.largest <= all.largest)) all.largest = of_range.largest;
+    if (std::isnan(all.largest)) all.largest = std::numeric_limits<double>::infinity();
+    all.energy += of_range.energy;
+  }
+  return all;
 }
 
-// All of the step, or under Coulomb's law the first of its halves, quarters, ... that lowers the energy.
-void ConeNewton::take_step(SolveState& state) {
+// All of the step, or under Coulomb's law the first of its halves, quarters, ... that lowers the energy. Returns the residual.
+double ConeNewton::take_step(SolveState& state) {
   state.update_velocity_and_shift();
-  if (!has_coulomb_) return;
-  const double before = energies_.back();
-  double after = energy(state);
-  for (int k = 0; k < kMostHalvings && !(after < before); ++k) {
+  ImpulseSet::Misses after = misses(state);
+  for (int k = 0; has_coulomb_ && k < kMostHalvings && !(after.energy < energies_.back()); ++k) {
     for (std::size_t r = 0; r < wanted_.size(); ++r) {
       state.impulse[r] = 0.5 * (state.impulse[r] + impulse_before_[r]);
     }
     state.update_velocity_and_shift();
-    after = energy(state);
+    after = misses(state);
   }
-  energies_.push_back(after);
+  energies_.push_back(after.energy);
+  return after.largest;
 }
 
 // Whether the last steps were worth the next.
@@ -168,16 +178,16 @@ double ConeNewton::first_residual(double least_compliance) {
 double ConeNewton::run(SolveState& state, double target) {
   has_coulomb_ = state.step->set().has_coulomb();
   state.update_shift();
-  double least = state.residual_of_cones();
+  const ImpulseSet::Misses start = misses(state);
+  double least = start.largest;
   best_impulse_ = state.impulse;
   without_fall_ = 0;
   most_without_fall_ = attempt_at(state.step->least_relative_compliance()).most_without_fall;
   energies_.reserve(kMostLawSteps + 1);
-  energies_.assign(1, has_coulomb_ ? energy(state) : 0.0);
+  energies_.assign(1, start.energy);
   const int most = has_coulomb_ ? kMostLawSteps : kMostSteps;
   for (int k = 0; k < most && least > target && find_step(state); ++k) {
-    take_step(state);
-    const double residual = state.residual_of_cones();
+    const double residual = take_step(state);
     without_fall_ = residual < kLeastFall * least ? 0 : without_fall_ + 1;
     if (residual < least) least = residual, best_impulse_ = state.impulse;
     if (!falls()) break;

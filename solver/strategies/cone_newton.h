@@ -42,19 +42,20 @@ class ConeNewton {
 
  private:
   bool find_step(SolveState& state);
-  void take_step(SolveState& state);
-  double energy(SolveState& state);
+  double take_step(SolveState& state);
+  ImpulseSet::Misses misses(SolveState& state);
   bool falls() const;
-  void linearize_rows(SolveState& state) const;
-  void linearize_cone(SolveState& state, int k);
+  void linearize_rows(SolveState& state, int first, int last) const;
+  void linearize_cone(SolveState& state, const FrictionCone& cone);
+  void solve(SolveState& state);
 
   bool has_coulomb_ = false;
   StepShift shift_;
   int without_fall_ = 0, most_without_fall_ = 1;  // steps of a cone
-  std::vector<double> energies_;                  // before every step and after the last; of Coulomb's law
-  std::vector<double> range_energy_;              // scratch
+  std::vector<double> energies_;                  // before every step and after the last
+  std::vector<ImpulseSet::Misses> range_misses_;  // scratch
   std::vector<double> wanted_;                    // (m) on the rows of cones, w - d F / theta
-  std::vector<double> impulse_before_, best_impulse_;  // (m)
+  std::vector<double> impulse_before_, slack_before_, best_impulse_;  // (m)
 };
 
 }  // namespace cleave

@@ -16,20 +16,23 @@ void CoulombShift::begin(std::size_t cones) {
 double CoulombShift::improve(std::span<const double> wanted) {
   apart_ = Eigen::Map<const Eigen::VectorXd>(wanted.data(), change_.size()) - change_;
   const double worst = apart_.lpNorm<Eigen::Infinity>();
+  const int columns = std::min(used_, kMemory);
   if (used_ > 0) {
     const int column = (used_ - 1) % kMemory;
     changes_.col(column) = change_ - last_change_;
     aparts_.col(column) = apart_ - last_apart_;
+    gram_.col(column).head(columns) = aparts_.leftCols(columns).transpose() * aparts_.col(column);
+    gram_.row(column).head(columns) = gram_.col(column).head(columns);
   }
+  ++used_;
   last_change_ = change_;
   last_apart_ = apart_;
-  const int columns = std::min(used_++, kMemory);
   change_ += apart_;
   if (columns == 0) return worst;
   using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMemory, kMemory>;
   using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMemory, 1>;
   const auto differences = aparts_.leftCols(columns);
-  Small gram = differences.transpose() * differences;
+  Small gram = gram_.topLeftCorner(columns, columns);
   gram.diagonal() *= 1 + 1e-12;  // dependent differences
   const SmallVector shares = gram.ldlt().solve(SmallVector(differences.transpose() * apart_));
   if (shares.allFinite()) change_ -= (changes_.leftCols(columns) + differences) * shares;

@@ -38,6 +38,7 @@ class CoulombShift {
   Eigen::VectorXd change_, apart_, last_change_, last_apart_;
   Eigen::MatrixXd changes_,
       aparts_;  // (cones, kMemory) differences of consecutive ones, the first used_ columns
+  Eigen::Matrix<double, kMemory, kMemory> gram_;  // aparts_^T aparts_
   int used_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "solver/strategies/step_shift.h"
 
+#include "solver/group_products.h"
+
 namespace cleave {
 namespace {
 
@@ -9,21 +11,35 @@ using Eigen::Vector3d;
 // factorisation, and ten times as much cost four factorisations in ten.
 constexpr double kAccuracy = 1e-2;
 
-// Along w_t; nothing where no tangent moves, as the contact sticks.
-double change_of_length(const Vector3d& w, const Vector3d& dw) {
-  const double t = tangential(w);
-  return t > 0 ? (w[1] * dw[1] + w[2] * dw[2]) / t : 0.0;
-}
-
 }  // namespace
 
-void StepShift::begin(const SolveState& state, std::span<const double> slack_before) {
-  const std::size_t cones = state.step->set().cones().size();
-  shift_.begin(cones);
-  wanted_.assign(cones, 0.0);
-  slack_before_.assign(slack_before.begin(), slack_before.end());
-  row_velocity_.resize(slack_before.size());
+StepShift::Contact StepShift::linearize(const SolveState& state, const FrictionCone& cone,
+                                        std::span<const double> slack_before) {
+  Contact contact;
+  const StepProblem& problem = state.step->problem();
+  const Vector3d before = cone.load(slack_before), moved = cone.load(state.slack) - before;
+  const double t = tangential(before);
+  if (!cone.coulomb || !(t > 0)) return contact;
+  for (int k = 1; k < cone.row_count; ++k) {
+    const double share = cone.mu * before[k] / t;
+    const double* row = problem.jacobian.data() + 12L * (cone.first_row + k);
+    for (int c = 0; c < 12; ++c) contact.row[c] += share * row[c];
+    contact.change += share * moved[k];
+    contact.compliance[k - 1] = share * problem.compliance[cone.first_row + k];
+  }
+  return contact;
+}
+
+void StepShift::begin(SolveState& state, std::span<const double> slack_before) {
+  const std::span<const FrictionCone> cones = state.step->set().cones();
+  shift_.begin(cones.size());
+  wanted_.resize(cones.size());
+  contacts_.resize(cones.size());
   first_apart_ = -1;
+  state.run_over_rows([&](int first, int last, int) {
+    for (const FrictionCone& cone : state.step->set().cones_of(first, last))
+      contacts_[&cone - cones.data()] = linearize(state, cone, slack_before);
+  });
 }
 
 void StepShift::add_to_right_hand_side(SolveState& state) const {
@@ -33,16 +49,18 @@ void StepShift::add_to_right_hand_side(SolveState& state) const {
 
 bool StepShift::is_matched(SolveState& state) {
   const std::span<const FrictionCone> cones = state.step->set().cones();
-  state.step->jacobian_times(state.dv, row_velocity_);
-  for (std::size_t c = 0; c < cones.size(); ++c) {
-    const FrictionCone& cone = cones[c];
-    if (!cone.coulomb) continue;
-    const Vector3d before = cone.load(slack_before_);
-    const Vector3d of_impulse =
-        cone.load(state.step->problem().compliance).cwiseProduct(cone.load(state.dlambda));
-    const Vector3d after = cone.load(state.slack) + cone.load(row_velocity_) + of_impulse;
-    wanted_[c] = cone.mu * change_of_length(before, after - before);
-  }
+  const std::span<const int> body = state.step->problem().row_body;
+  const double* dv = state.dv.data();
+  state.run_over_rows([&](int first, int last, int) {
+    for (const FrictionCone& cone : state.step->set().cones_of(first, last)) {
+      const Contact& contact = contacts_[&cone - cones.data()];
+      const int a = body[2L * cone.first_row], b = body[2L * cone.first_row + 1];
+      const Vector3d dlambda = cone.load(state.dlambda);
+      const BodyPair both = load_pair(dv + 6L * a, b < 0 ? nullptr : dv + 6L * b);
+      wanted_[&cone - cones.data()] = contact.change + row_times(contact.row, both) +
+                                      contact.compliance[0] * dlambda[1] + contact.compliance[1] * dlambda[2];
+    }
+  });
   const double apart = shift_.improve(wanted_);
   if (first_apart_ < 0) first_apart_ = apart;
   return apart <= kAccuracy * first_apart_;

@@ -19,21 +19,31 @@ namespace cleave {
 
 class StepShift {
  public:
-  // Of the step from these slacks (m), m/s; the change is zero.
-  void begin(const SolveState& state, std::span<const double> slack_before);
+  // Of the step from slacks slack_before (m, m/s), with state.slack where the factored step begins; the change is zero.
+  void begin(SolveState& state, std::span<const double> slack_before);
 
   // Of the next back-substitution: state.f_r <- f_r - ds on the normals.
   void add_to_right_hand_side(SolveState& state) const;
 
-  // After the back-substitution, with state.slack where the factored step began: whether the change that it leads to is near
-  // enough to the one that it was for. Makes the next change.
+  // After the back-substitution: whether the change that it leads to is near enough to the one that it was for. Makes the next
+  // change.
   bool is_matched(SolveState& state);
 
  private:
+  // mu u . dw_t of a contact as change + row . (dv of its two bodies) + compliance . dlambda_t; zero where the law is not Coulomb's
+  // or no tangent moves, as the contact sticks.
+  struct Contact {
+    double row[12] = {};
+    double change = 0;
+    double compliance[2] = {};
+  };
+  static Contact linearize(const SolveState& state, const FrictionCone& cone,
+                           std::span<const double> slack_before);
+
   CoulombShift shift_;
-  double first_apart_ = -1;                          // m/s; negative before the first back-substitution
-  std::vector<double> slack_before_, row_velocity_;  // (m)
-  std::vector<double> wanted_;                       // (cones)
+  double first_apart_ = -1;        // m/s; negative before the first back-substitution
+  std::vector<Contact> contacts_;  // (cones)
+  std::vector<double> wanted_;     // (cones)
 };
 
 }  // namespace cleave

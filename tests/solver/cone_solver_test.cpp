@@ -47,6 +47,83 @@ TEST(ConeTest, ProjectsOnTheNearestPoint) {
   }
 }
 
+double largest(const Vector3d& x) { return x.cwiseAbs().maxCoeff(); }
+
+// Lists of one to six contacts, with one tangent or two, of which ContactLanes takes four.
+TEST(ConeTest, LanesMissAsMuchAsTheirContacts) {
+  SeededRandom random(5);
+  for (int trial = 0; trial < 500; ++trial) {
+    std::vector<FrictionCone> cones(random.integer(1, 6));
+    int rows = 0;
+    for (FrictionCone& cone : cones) {
+      cone = {rows, random.integer(2, 3), std::exp(random.uniform(-3, 3))};
+      rows += cone.row_count + random.integer(0, 1);
+    }
+    std::vector<double> impulse(rows), w(rows), d(rows);
+    for (int r = 0; r < rows; ++r) {
+      impulse[r] = random.uniform(-2, 2), w[r] = random.uniform(-2, 2), d[r] = random.log_uniform(1e-2, 1e2);
+    }
+    const int broken = random.integer(0, static_cast<int>(cones.size()) - 1);
+    (random.chance(0.5) ? impulse : w)[cones[broken].first_row + random.integer(0, 1)] = std::nan("");
+    const ContactLanes four(cones);
+    ASSERT_EQ(four.count, std::min<int>(cones.size(), kContactLanes));
+    const Lanes misses =
+        largest_cone_residual(four.mu, four.load_normal(d), four.load(impulse), four.load(w));
+    for (int lane = 0; lane < kContactLanes; ++lane) {
+      if (lane >= four.count) {
+        EXPECT_EQ(misses[lane], 0);
+      } else if (lane == broken) {
+        EXPECT_TRUE(std::isnan(misses[lane]));
+      } else {
+        const FrictionCone& cone = cones[lane];
+        const double of_contact =
+            largest(cone_residual(cone.mu, d[cone.first_row], cone.load(impulse), cone.load(w)));
+        EXPECT_NEAR(misses[lane], of_contact, 1e-13 * (1 + 100 * d[cone.first_row]));
+      }
+    }
+  }
+}
+
+// Cones and boxes side by side, in ranges of rows that cut through contacts.
+TEST(ConeTest, MissesAreThoseOfEveryRowAndContact) {
+  StepProblem problem = make_turned_pile(2, 1e-5);
+  problem.box_angle_rad.clear();
+  problem = with_sets(std::move(problem), ContactSet::cone, 0.6);
+  const int m = problem.row_count();
+  PreparedStep step;
+  step.prepare(problem);
+  const ImpulseSet& set = step.set();
+  ASSERT_GT(set.cones().size(), 9u);
+  SeededRandom random(6);
+  std::vector<double> impulse(m), w(m);
+  for (int r = 0; r < m; ++r) impulse[r] = random.uniform(-1, 1), w[r] = random.uniform(-1, 1);
+  std::vector<double> miss(m);  // of a contact on its normal
+  for (int r = 0; r < m; ++r) {
+    const double d = step.diagonal()[r];
+    miss[r] =
+        d * std::abs(impulse[r] - std::clamp(impulse[r] - w[r] / d, problem.lower[r], problem.upper[r]));
+  }
+  for (const FrictionCone& cone : set.cones()) {
+    std::fill_n(miss.begin() + cone.first_row, cone.row_count, 0.0);
+    miss[cone.first_row] =
+        largest(cone_residual(cone.mu, step.diagonal()[cone.first_row], cone.load(impulse), cone.load(w)));
+  }
+  for (const int length : {1, 7, 50, m}) {
+    double energy = 0;
+    for (int first = 0; first < m; first += length) {
+      const int last = std::min(first + length, m);
+      const double expected = *std::max_element(miss.begin() + first, miss.begin() + last);
+      const ImpulseSet::Misses misses = set.misses(first, last, step.diagonal(), impulse, w);
+      EXPECT_NEAR(misses.largest, expected, 1e-13 * (1 + expected));
+      EXPECT_EQ(set.residual(first, last, step.diagonal(), impulse, w), misses.largest);
+      energy += misses.energy;
+    }
+    double expected = 0;
+    for (int r = 0; r < m; ++r) expected += miss[r] * miss[r] / step.diagonal()[r];
+    EXPECT_NEAR(energy, expected, 1e-12 * expected);
+  }
+}
+
 // Four contacts at a time, every second one with one tangent.
 TEST(ConeTest, WeightBasisInvertsItsBlock) {
   SeededRandom random(4);

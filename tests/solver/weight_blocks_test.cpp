@@ -8,8 +8,8 @@
 #include <memory>
 #include <string>
 
-#include "solver/kernels/kernel.h"
 #include "solver/impulse_set.h"
+#include "solver/kernels/kernel.h"
 #include "solver/registry.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/turned_boxes.h"
@@ -98,7 +98,8 @@ TEST_P(WeightBlocksTest, TurnedBoxesAgreeWithTheSameRowsTurned) {
   }
 }
 
-// Blocks of one to three rows with any basis, rows outside of them scalar; every third block is singular.
+// Blocks of one to three rows with any basis, rows outside of them scalar; every third block is singular. Half of them come after
+// the others.
 void add_blocks(const StepProblem& problem, SeededRandom& random, LinearSystem& system) {
   for (const int r : contacts_of(problem)) {
     WeightBlock block{r + random.integer(0, 1), random.integer(1, 3), {}};
@@ -108,6 +109,7 @@ void add_blocks(const StepProblem& problem, SeededRandom& random, LinearSystem& 
     system.d[block.first_row] = random.chance(1.0 / 3) ? 0 : random.log_uniform(1e-2, 1e2);
     system.blocks.push_back(block);
   }
+  std::ranges::stable_partition(system.blocks, [](const WeightBlock& block) { return block.first_row % 2; });
 }
 
 // B as one matrix (m, m).

@@ -6,6 +6,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "solver/cone.h"
 
 namespace cleave {
 
@@ -18,6 +23,54 @@ struct LaneVector {
 
 struct LaneMatrix {
   LaneVector row[3];
+};
+
+// Contacts in the lanes: the first four of a list or all there are. The other lanes are a contact of mu = 1 whose numbers are
+// zero.
+class ContactLanes {
+ public:
+  explicit ContactLanes(std::span<const FrictionCone> cones)
+      : cone(cones.data()), count(static_cast<int>(std::min<std::size_t>(cones.size(), kContactLanes))) {
+    for (int lane = 0; lane < count; ++lane) {
+      mu[lane] = cone[lane].mu;
+      is_there[lane] = 1;
+      second_tangent[lane] = cone[lane].row_count == 3 ? 1 : 0;
+    }
+  }
+
+  // Of x (m). Vectors are put together in registers: read right after their entries were stored they would wait for memory.
+  LaneVector load(std::span<const double> x) const {
+    const std::array<const double*, kContactLanes> row = rows(x);
+    const auto entries = [&](int k) { return Lanes(row[0][k], row[1][k], row[2][k], row[3][k]); };
+    const auto third = [&](int lane) { return has_third(lane) ? row[lane][2] : 0.0; };
+    return {entries(0), entries(1), Lanes(third(0), third(1), third(2), third(3))};
+  }
+  void store(const LaneVector& lanes, std::span<double> x) const {
+    for (int lane = 0; lane < count; ++lane) {
+      double* row = x.data() + cone[lane].first_row;
+      row[0] = lanes.n.data()[lane], row[1] = lanes.u.data()[lane];
+      if (has_third(lane)) row[2] = lanes.v.data()[lane];
+    }
+  }
+  // Of x (m) on the normals; one in the other lanes.
+  Lanes load_normal(std::span<const double> x) const {
+    const std::array<const double*, kContactLanes> row = rows(x);
+    return Lanes(row[0][0], row[1][0], row[2][0], row[3][0]) + (1 - is_there);
+  }
+
+  const FrictionCone* cone;
+  int count;
+  Lanes mu = Lanes::Ones(), is_there = Lanes::Zero(), second_tangent = Lanes::Zero();
+
+ private:
+  static constexpr double kNothing[3] = {};
+  std::array<const double*, kContactLanes> rows(std::span<const double> x) const {
+    std::array<const double*, kContactLanes> row;
+    for (int lane = 0; lane < kContactLanes; ++lane)
+      row[lane] = lane < count ? x.data() + cone[lane].first_row : kNothing;
+    return row;
+  }
+  bool has_third(int lane) const { return lane < count && cone[lane].row_count == 3; }
 };
 
 inline LaneVector operator+(const LaneVector& x, const LaneVector& y) {
@@ -120,5 +173,8 @@ struct LaneWeights {
 };
 
 LaneWeights find_weight_basis(const LaneMatrix& x, const LaneVector& compliance);
+
+// The largest entry of cone.h's cone_residual, m/s; no number where an impulse or a slack is none.
+Lanes largest_cone_residual(const Lanes& mu, const Lanes& d, const LaneVector& impulse, const LaneVector& w);
 
 }  // namespace cleave

@@ -1,4 +1,4 @@
-#include "solver/strategies/cone_lanes.h"
+#include "solver/cone_lanes.h"
 
 #include <cstring>
 #include <utility>
@@ -73,6 +73,23 @@ LaneWeights find_weight_basis(const LaneMatrix& x, const LaneVector& compliance)
     weights.basis.row[k] = {lanes_of(unit[0]), lanes_of(unit[1]), lanes_of(unit[2])};
   }
   return weights;
+}
+
+// Comparisons with what is no number are false, and then all three entries are none.
+Lanes largest_cone_residual(const Lanes& mu, const Lanes& d, const LaneVector& impulse, const LaneVector& w) {
+  const LaneVector force = d * impulse, y = force - w;
+  const Lanes t = tangential(y), apart = (t - mu * y.n) / (1 + mu * mu);
+  const auto is_inside = vector_of(t) <= vector_of(mu * y.n);
+  const auto is_zero = vector_of(mu * t) <= vector_of(-y.n);
+  const auto size = [&](const Lanes& on_surface, const Lanes& beyond, const Lanes& within) {
+    return is_inside ? vector_of(within.abs())
+                     : (is_zero ? vector_of(beyond.abs()) : vector_of(on_surface.abs()));
+  };
+  const FourLanes n = size(w.n - mu * apart, force.n, w.n);
+  const FourLanes u = size(w.u + apart * y.u / t, force.u, w.u);
+  const FourLanes v = size(w.v + apart * y.v / t, force.v, w.v);
+  const FourLanes larger = n > u ? n : u;
+  return lanes_of(larger > v ? larger : v);
 }
 
 }  // namespace cleave
