@@ -4,25 +4,18 @@
 #include <cassert>
 
 #include "solver/linear/dense_block.h"
+#include "solver/linear/vector_lanes.h"
 
 namespace cleave {
 namespace {
 
-// y = W x or W^T x for a 6x6 lower triangular W (column-major, zeros above), in place. Whole columns are vectors.
-void multiply_lower(const double* w, int ld, double* x) {
-  double y[6] = {};
-  for (int c = 0; c < 6; ++c) {
-    for (int r = 0; r < 6; ++r) y[r] += w[r + c * ld] * x[c];
-  }
-  std::copy(y, y + 6, x);
+// Two numbers at a time: the compiler would call a function for six.
+void copy_block(const double* from, double* to) {
+  for (int c = 0; c < 6; c += 2) store<2>(to + c, load<2>(from + c));
 }
 
-void multiply_upper(const double* w, int ld, double* x) {
-  double y[6] = {};
-  for (int c = 0; c < 6; ++c) {
-    for (int r = c; r < 6; ++r) y[c] += w[r + c * ld] * x[r];
-  }
-  std::copy(y, y + 6, x);
+void add_block(const double* from, double* to) {
+  for (int c = 0; c < 6; c += 2) store<2>(to + c, load<2>(to + c) + load<2>(from + c));
 }
 
 }  // namespace
@@ -179,8 +172,8 @@ void BlockCholesky::forward(int branch_index, double* x) {
   double* carry = carry_.data() + branch.carry_offset;
   std::fill_n(carry, 6 * supernodes[branch.last].rows_below(), 0.0);
   const auto add = [&](long entry, const double* values) {
-    double* into = rows[entry] < branch.end_position ? x + 6L * rows[entry] : carry + 6L * carry_index[entry];
-    for (int c = 0; c < 6; ++c) into[c] += values[c];
+    add_block(values,
+              rows[entry] < branch.end_position ? x + 6L * rows[entry] : carry + 6L * carry_index[entry]);
   };
   for (const int child : symbolic_.child_branches(branch_index)) {
     const Branch& from = symbolic_.branches()[child];
@@ -216,8 +209,7 @@ void BlockCholesky::backward(int branch_index, double* x) {
     const double* block = panel(s);
     double* own = x + 6L * s.first_position;
     for (int k = 0; k < s.rows_below(); ++k) {
-      const double* from = x + 6L * symbolic_.rows()[s.first_row + s.width + k];
-      std::copy(from, from + 6, scratch + 6 * k);
+      copy_block(x + 6L * symbolic_.rows()[s.first_row + s.width + k], scratch + 6 * k);
     }
     subtract_transpose_vector(below, 6 * s.width, block + 6 * s.width, ld, scratch, own);
     for (int k = s.width - 1; k >= 0; --k) {

@@ -7,16 +7,23 @@
 #include <utility>
 
 #include "solver/counting_sort.h"
+#include "solver/group_products.h"
 #include "solver/linear/dense_block.h"
 
 namespace cleave {
 namespace {
 
-// target += the 6x6 block, or its transpose.
+// target += the 6x6 block, or its transpose. Two numbers at a time: the second body's have only just been stored, four at a
+// time, and a load that is not within one of those stores would wait for memory.
 void add_block(double* target, int ld, const double* block, int block_ld, bool transposed) {
   for (int c = 0; c < 6; ++c) {
-    for (int r = 0; r < 6; ++r)
-      target[r + c * ld] += transposed ? block[c + block_ld * r] : block[r + block_ld * c];
+    for (int r = 0; r < 6; r += 2) {
+      const double* from = block + r + block_ld * c;
+      const TwoLanes pair = transposed ? TwoLanes{block[c + block_ld * r], block[c + block_ld * (r + 1)]}
+                                       : read<TwoLanes>(from);
+      double* into = target + r + c * ld;
+      write(read<TwoLanes>(into) + pair, into);
+    }
   }
 }
 

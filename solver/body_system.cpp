@@ -69,8 +69,9 @@ void BodySystem::expand(const Chunk& groups, std::span<const double> x, std::spa
   for (int g = groups.first; g < groups.last; ++g) {
     const RowGroup& group = step_->groups()[g];
     const BodyPair both = load(group, x);
-    for (int r = group.first_row; r < group.first_row + group.row_count; ++r)
-      dlambda[r] = d[r] * (f_r[r] - row_times(rows_.jacobian() + 12L * r, both));
+    visit_products(group, rows_.jacobian(), both, [&]<class Value>(int r, Value product) {
+      write(read<Value>(&d[r]) * (read<Value>(&f_r[r]) - product), &dlambda[r]);
+    });
   }
 }
 

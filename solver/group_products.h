@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 #include <span>
 
 #include "solver/prepared_step.h"
@@ -30,6 +31,7 @@ inline void add_sides(std::span<const int> sides, const double* group_sums, cons
 }
 
 using FourLanes [[gnu::vector_size(4 * sizeof(double))]] = double;
+using TwoLanes [[gnu::vector_size(2 * sizeof(double))]] = double;
 
 // Velocities of the two bodies of a group (12), put together in registers: read as vectors right after they were copied
 // number by number, they would wait for memory. b is nullptr for static.
@@ -50,14 +52,51 @@ inline BodyPair load_pair(const double* both) {
   return {{four(0), four(4), four(8)}};
 }
 
-// Summed in four lanes, as a vector: the compiler makes scalar instructions of the same loops.
-inline double row_times(const double* row, const BodyPair& both) {
+// The products of a row in four lanes, as a vector: the compiler makes scalar instructions of the same loops.
+inline FourLanes lane_products(const double* row, const BodyPair& both) {
   FourLanes sum = {};
   for (int k = 0; k < 3; ++k) {
     const FourLanes a = {row[4 * k], row[4 * k + 1], row[4 * k + 2], row[4 * k + 3]};
     sum += a * both.part[k];
   }
+  return sum;
+}
+
+inline double row_times(const double* row, const BodyPair& both) {
+  const FourLanes sum = lane_products(row, both);
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+// row_times of four rows that follow each other, by the same additions.
+inline FourLanes four_rows_times(const double* row, const BodyPair& both) {
+  const auto in_pairs = [&](int r) {
+    const FourLanes a = lane_products(row + 12L * r, both), b = lane_products(row + 12L * (r + 1), both);
+    return __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  };
+  const FourLanes first = in_pairs(0), second = in_pairs(2);
+  return __builtin_shufflevector(first, second, 0, 1, 4, 5) +
+         __builtin_shufflevector(first, second, 2, 3, 6, 7);
+}
+
+// A double or FourLanes at p.
+template <class Value>
+Value read(const double* p) {
+  Value value;
+  std::memcpy(&value, p, sizeof value);
+  return value;
+}
+template <class Value>
+void write(Value value, double* p) {
+  std::memcpy(p, &value, sizeof value);
+}
+
+// visit(r, row_r . both) for the rows of a group: for four of them at a time as FourLanes, for what is left as doubles.
+template <class Visit>
+void visit_products(const RowGroup& group, const double* rows, const BodyPair& both, const Visit& visit) {
+  int r = group.first_row;
+  const int end = r + group.row_count;
+  for (; r + 4 <= end; r += 4) visit(r, four_rows_times(rows + 12L * r, both));
+  for (; r < end; ++r) visit(r, row_times(rows + 12L * r, both));
 }
 
 }  // namespace cleave

@@ -175,8 +175,7 @@ void PreparedStep::jacobian_times(const Chunk& chunk, std::span<const double> v,
     const RowGroup& g = groups_[i];
     const BodyPair both =
         load_pair(v.data() + 6L * g.body_a, g.body_b < 0 ? nullptr : v.data() + 6L * g.body_b);
-    for (int r = g.first_row; r < g.first_row + g.row_count; ++r)
-      out[r] = row_times(problem_->jacobian.data() + 12L * r, both);
+    visit_products(g, problem_->jacobian.data(), both, [&](int r, auto product) { write(product, &out[r]); });
   }
 }
 
