@@ -32,7 +32,7 @@ namespace cleave {
 
 class AlartCurnier {
  public:
-  // From zero impulses and then from those of the step before, until the residual is within the limit. The impulses of the least
+  // From zero impulses and then from those of the step before, a few steps from each and then all of them, until the residual is within the limit. The impulses of the least
   // residual stay, the present ones included. False where none is within it, or where the problem is none for it: more rows than LU
   // is worth its time for, turned boxes, or cones without the law. What LU needs is not in the predicted memory.
   bool run(SolveState& state, std::span<const double> warm_impulse);
@@ -55,7 +55,7 @@ class AlartCurnier {
     Eigen::Matrix3d derivative, g_inverse, e;  // P', G^-1, E
   };
 
-  bool attempt(SolveState& state, std::span<const double> start);
+  bool attempt(SolveState& state, std::span<const double> start, long most);
   void load(SolveState& state, std::span<const double> impulse) const;
   void list_blocks(const SolveState& state);
   double find_error(const SolveState& state);  // F and the energy

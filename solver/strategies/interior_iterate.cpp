@@ -4,6 +4,13 @@
 #include <cmath>
 
 namespace cleave {
+namespace {
+
+// With cones. A second correction saves a factorisation in forty and takes more time than that: on piles of 200 and 600 rocks with
+// cfm 1e-6 to 1e-8 steps took 2 to 5 % less without it. Coulomb's law keeps it: two piles of the tests are not solved otherwise.
+constexpr int kConeCorrections = 1;
+
+}  // namespace
 
 // Impulses of the last step that are not nearly right cost more iterations than starting from none.
 void InteriorIterate::choose_impulses(SolveState& state) {
@@ -130,7 +137,10 @@ double InteriorIterate::mean_product(double step) const {
 
 void InteriorIterate::correct_centrality(SolveState& state) {
   const double low = constants_.band * target_, high = target_ / constants_.band;
-  for (int k = 0; k < constants_.corrections && course_.largest_step < constants_.long_step; ++k) {
+  const bool has_convex_cones = cones_.product_count() > 0 && !state.step->set().has_coulomb();
+  const int most =
+      has_convex_cones ? std::min(constants_.corrections, kConeCorrections) : constants_.corrections;
+  for (int k = 0; k < most && course_.largest_step < constants_.long_step; ++k) {
     const double step = course_.largest_step, trial = std::min(1.0, step + constants_.reach);
     kept_dlambda_.resize(state.dlambda.size());
     kept_dlambda_.swap(state.dlambda);

@@ -37,6 +37,8 @@ constexpr int kMostShifts = 8;
 constexpr double kFirstLawPolish = 1e-5, kNextLawPolish = 0.1;
 constexpr int kStalledIterations = 5;
 constexpr double kNextStalledPolish = 0.5;
+// So many without progress, and the iteration ends: where it came right, it never was more than ten.
+constexpr int kHopelessIterations = 20;
 
 class InteriorPoint : public Strategy {
  public:
@@ -53,6 +55,7 @@ class InteriorPoint : public Strategy {
   bool polish_rows(SolveState& state, double tolerance);
   bool polish_best(SolveState& state);
   bool is_stalled() const;
+  bool is_hopeless() const { return has_coulomb_ && since_best_ >= kHopelessIterations; }
   bool end(SolveState& state);
   void step(SolveState& state, double error);
   void adapt_delta(double rounding);
@@ -214,7 +217,7 @@ bool InteriorPoint::run(SolveState& state) {
   for (int k = 0; k < state.options.max_iterations; ++k) {
     double error = iterate_.error(state);
     const Progress progress = watch(state, error);
-    if (progress == Progress::finished) break;
+    if (progress == Progress::finished || is_hopeless()) break;
     if (progress == Progress::rounding) {
       if (!raise_delta()) break;
       iterate_.restore(state);
