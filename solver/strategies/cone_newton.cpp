@@ -29,11 +29,7 @@ struct Attempt {
   int most_without_fall;
 };
 constexpr Attempt kAttempts[] = {  // the last one for all the rest
-    {1e-3, 1e-3, 3},
-    {1e-4, 1e-6, 2},
-    {1e-6, 1e-8, 2},
-    {1e-9, 1e-8, 1},
-    {0, 1e-9, 1}};
+    {1e-2, 1e-3, 3}, {1e-3, 1e-4, 3}, {1e-4, 1e-6, 2}, {1e-6, 1e-8, 2}, {1e-9, 1e-8, 1}, {0, 1e-9, 1}};
 
 const Attempt& attempt_at(double least_compliance) {
   return *std::find_if(std::begin(kAttempts), std::end(kAttempts) - 1,

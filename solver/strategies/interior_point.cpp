@@ -1,7 +1,7 @@
 // Strategy `interior-point`: Mehrotra's predictor-corrector on the box-constrained quadratic programme of the
 // step, with Gondzio's centrality corrections (equations in interior_iterate.h). One factorisation an
-// iteration and two back-substitutions; a third where Mehrotra's direction is poor, and up to two corrections
-// where bounds cut the step short. On 200 rocks a back-substitution costs a fifth of assembly and
+// iteration and two back-substitutions; a third where Mehrotra's direction is poor, and up to two corrections (with cones
+// one) where bounds cut the step short. On 200 rocks a back-substitution costs a fifth of assembly and
 // factorisation, on more of them less; the corrections save a sixth of the iterations.
 //
 // Once the error is small the active set can be read off (s against z); an exact solve on that set then ends
