@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "solver/counting_sort.h"
-#include "solver/group_products.h"
 #include "solver/linear/dense_block.h"
+#include "solver/linear/vector_lanes.h"
 
 namespace cleave {
 namespace {
@@ -19,10 +19,10 @@ void add_block(double* target, int ld, const double* block, int block_ld, bool t
   for (int c = 0; c < 6; ++c) {
     for (int r = 0; r < 6; r += 2) {
       const double* from = block + r + block_ld * c;
-      const TwoLanes pair = transposed ? TwoLanes{block[c + block_ld * r], block[c + block_ld * (r + 1)]}
-                                       : read<TwoLanes>(from);
+      const Vector<2> pair =
+          transposed ? Vector<2>{block[c + block_ld * r], block[c + block_ld * (r + 1)]} : load<2>(from);
       double* into = target + r + c * ld;
-      write(read<TwoLanes>(into) + pair, into);
+      store<2>(into, load<2>(into) + pair);
     }
   }
 }

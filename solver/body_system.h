@@ -21,10 +21,7 @@ class BodySystem {
   void bind(const PreparedStep& step, std::span<const int> position = {});
   // As RowWeights, the arrays must stay where they are. turn() of all groups comes after it.
   void set(const RowWeights& weights) { rows_.set(step_->problem(), weights); }
-  void turn(const Chunk& groups) {
-    const auto [first, last] = step_->rows_of(groups);
-    rows_.turn(first, last);
-  }
+  void turn(const Chunk& groups) { rows_.turn(step_->rows_of(groups)); }
   const WeightedRows& rows() const { return rows_; }
 
   // Sums of J'^T D f_r by group, f_r (m).

@@ -1,25 +1,21 @@
 #include "solver/cone_lanes.h"
 
-#include <cstring>
 #include <utility>
+
+#include "solver/linear/four_lanes.h"
 
 namespace cleave {
 namespace {
 
 // For choices lane by lane, which Eigen makes one after the other.
-using FourLanes [[gnu::vector_size(kContactLanes * sizeof(double))]] = double;
-
-FourLanes vector_of(const Lanes& lanes) {
-  FourLanes vector;
-  std::memcpy(&vector, lanes.data(), sizeof vector);
-  return vector;
-}
+FourLanes vector_of(const Lanes& lanes) { return read<FourLanes>(lanes.data()); }
 
 Lanes lanes_of(const FourLanes& vector) {
   Lanes lanes;
-  std::memcpy(lanes.data(), &vector, sizeof vector);
+  write(vector, lanes.data());
   return lanes;
 }
+static_assert(sizeof(FourLanes) == sizeof(Lanes));
 
 // A row of [X sqrt(C)] and of the unit matrix beside it, on which the same is done.
 struct ExtendedRow {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
 #include <span>
 
+#include "solver/linear/four_lanes.h"
 #include "solver/prepared_step.h"
 
 namespace cleave {
@@ -30,9 +30,6 @@ inline void add_sides(std::span<const int> sides, const double* group_sums, cons
   std::copy_n(sum, 6, total);
 }
 
-using FourLanes [[gnu::vector_size(4 * sizeof(double))]] = double;
-using TwoLanes [[gnu::vector_size(2 * sizeof(double))]] = double;
-
 // Velocities of the two bodies of a group (12), put together in registers: read as vectors right after they were copied
 // number by number, they would wait for memory. b is nullptr for static.
 struct BodyPair {
@@ -48,17 +45,13 @@ inline BodyPair load_pair(const double* a, const double* b) {
 
 // Of velocities that stand one after the other.
 inline BodyPair load_pair(const double* both) {
-  const auto four = [&](int c) { return FourLanes{both[c], both[c + 1], both[c + 2], both[c + 3]}; };
-  return {{four(0), four(4), four(8)}};
+  return {{read<FourLanes>(both), read<FourLanes>(both + 4), read<FourLanes>(both + 8)}};
 }
 
 // The products of a row in four lanes, as a vector: the compiler makes scalar instructions of the same loops.
 inline FourLanes lane_products(const double* row, const BodyPair& both) {
   FourLanes sum = {};
-  for (int k = 0; k < 3; ++k) {
-    const FourLanes a = {row[4 * k], row[4 * k + 1], row[4 * k + 2], row[4 * k + 3]};
-    sum += a * both.part[k];
-  }
+  for (int k = 0; k < 3; ++k) sum += read<FourLanes>(row + 4 * k) * both.part[k];
   return sum;
 }
 
@@ -76,18 +69,6 @@ inline FourLanes four_rows_times(const double* row, const BodyPair& both) {
   const FourLanes first = in_pairs(0), second = in_pairs(2);
   return __builtin_shufflevector(first, second, 0, 1, 4, 5) +
          __builtin_shufflevector(first, second, 2, 3, 6, 7);
-}
-
-// A double or FourLanes at p.
-template <class Value>
-Value read(const double* p) {
-  Value value;
-  std::memcpy(&value, p, sizeof value);
-  return value;
-}
-template <class Value>
-void write(Value value, double* p) {
-  std::memcpy(p, &value, sizeof value);
 }
 
 // visit(r, row_r . both) for the rows of a group: for four of them at a time as FourLanes, for what is left as doubles.

@@ -69,8 +69,9 @@ void WeightedRows::set(const StepProblem& problem, const RowWeights& weights) {
 }
 
 // The rows between blocks are copied.
-void WeightedRows::turn(int first, int last) {
+void WeightedRows::turn(std::pair<int, int> range) {
   if (blocks_.empty()) return;
+  const int first = range.first, last = range.second;
   const double* rows = problem_->jacobian.data();
   double* turned = turned_jacobian_.data();
   std::span<const WeightBlock>::iterator next[2];

@@ -17,6 +17,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "solver/step_problem.h"
@@ -49,13 +50,11 @@ class WeightedRows {
  public:
   // All of J' is then to be made by turn().
   void set(const StepProblem& problem, const RowWeights& weights);
-  // Makes J' of the rows first .. last - 1, which end no block; calls for other rows may run beside it.
-  void turn(int first, int last);
+  // Makes J' of rows first .. last - 1 that cut no block in two; calls for other rows may run beside it.
+  void turn(std::pair<int, int> range);
 
   std::span<const double> d() const { return d_; }
   const double* jacobian() const { return jacobian_; }  // (m, 12) J'
-  void to_basis(std::span<double> x) const { cleave::to_basis(blocks_, x); }
-  void from_basis(std::span<double> x) const { cleave::from_basis(blocks_, x); }
 
  private:
   std::span<const double> d_;

