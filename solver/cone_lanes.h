@@ -1,5 +1,6 @@
 // Four friction contacts side by side: vectors and matrices of a contact whose entries are a lane for each of the four, and the
-// algebra of the second-order cone Q = { x: |x_t| <= x_n } on them, in vector instructions.
+// algebra of the second-order cone Q = { x: |x_t| <= x_n } on them, in vector instructions. What the compiler would call rather than
+// inline is inlined by attribute: a call hands its vectors over in memory.
 //
 // With x o y = (x . y, x_n y_t + y_n x_t), e = (1, 0, 0) is the one, and x_n +- |x_t| are the eigenvalues of x. Source:
 // Vandenberghe, "The CVXOPT linear and quadratic cone program solvers", 2010, section 4.
@@ -85,7 +86,7 @@ inline Lanes dot(const LaneVector& x, const LaneVector& y) { return x.n * y.n + 
 inline LaneVector operator*(const LaneMatrix& a, const LaneVector& x) {
   return {dot(a.row[0], x), dot(a.row[1], x), dot(a.row[2], x)};
 }
-inline LaneVector transposed_times(const LaneMatrix& a, const LaneVector& x) {
+[[gnu::always_inline]] inline LaneVector transposed_times(const LaneMatrix& a, const LaneVector& x) {
   return x.n * a.row[0] + x.u * a.row[1] + x.v * a.row[2];
 }
 inline LaneMatrix operator*(const LaneMatrix& a, const LaneMatrix& b) {
@@ -127,7 +128,7 @@ inline LaneVector jordan_divide(const LaneVector& c, const LaneDivisor& by) {
 
 // The inverse of the step along y at which l + step y leaves Q; 0 or less where it never does. It is the least eigenvalue of
 // y in the coordinates where l is e.
-inline Lanes inverse_step(const LaneDivisor& by, const LaneVector& y) {
+[[gnu::always_inline]] inline Lanes inverse_step(const LaneDivisor& by, const LaneVector& y) {
   const Lanes along = hyperbolic_product(by.unit, y);
   const Lanes share = (along + y.n) / (by.unit.n + 1);
   return (tangential(y - share * by.unit) - along) * by.inverse_norm;
@@ -150,7 +151,7 @@ struct LaneScaling {
   LaneMatrix v, v_inverse;
 };
 
-inline LaneScaling find_scaling(const LaneVector& s, const LaneVector& z) {
+[[gnu::always_inline]] inline LaneScaling find_scaling(const LaneVector& s, const LaneVector& z) {
   const Lanes s_norm = hyperbolic_norm(s), z_norm = hyperbolic_norm(z);
   const LaneVector s_unit = s_norm.inverse() * s, z_unit = z_norm.inverse() * z;
   const Lanes twice_half = 2 * ((1 + dot(s_unit, z_unit)) / 2).sqrt();

@@ -2,35 +2,55 @@
 
 #include <algorithm>
 #include <cassert>
+#include <type_traits>
+
+#include "solver/linear/four_lanes.h"
 
 namespace cleave {
 namespace {
 
-// The rows of a block of x (m, kWidth), multiplied by B^T or B from the left, into those of y; y may be x. All sizes are known
-// to the compiler: a solve comes here three times an iteration.
-template <int kCount, int kWidth, bool kTransposed>
-void multiply_rows(const WeightBlock& block, const double* x, double* y) {
-  const std::ptrdiff_t first = static_cast<std::ptrdiff_t>(kWidth) * block.first_row;
-  double result[kCount][kWidth] = {};
-  for (int i = 0; i < kCount; ++i) {
-    for (int k = 0; k < kCount; ++k) {
-      const double share = block.basis[kTransposed ? kCount * i + k : kCount * k + i];
-      for (int c = 0; c < kWidth; ++c) result[i][c] += share * x[first + kWidth * k + c];
-    }
-  }
-  std::copy_n(&result[0][0], kCount * kWidth, y + first);
-}
-
-template <int kWidth, bool kTransposed>
-void multiply_block(const WeightBlock& block, const double* x, double* y) {
+// Sizes are known to the compiler: a solve comes here several times an iteration. call(std::integral_constant of the block's rows).
+template <class Call>
+void with_row_count(const WeightBlock& block, const Call& call) {
   switch (block.row_count) {
     case 1:
-      return multiply_rows<1, kWidth, kTransposed>(block, x, y);
+      return call(std::integral_constant<int, 1>());
     case 2:
-      return multiply_rows<2, kWidth, kTransposed>(block, x, y);
+      return call(std::integral_constant<int, 2>());
     default:
-      return multiply_rows<3, kWidth, kTransposed>(block, x, y);
+      return call(std::integral_constant<int, 3>());
   }
+}
+
+// The entries of a block in x (m), multiplied by B^T or B.
+template <bool kTransposed>
+void multiply_entries(const WeightBlock& block, double* x) {
+  with_row_count(block, [&](auto count) {
+    constexpr int kCount = count;
+    double result[kCount] = {};
+    for (int i = 0; i < kCount; ++i) {
+      for (int k = 0; k < kCount; ++k)
+        result[i] += block.basis[kTransposed ? kCount * i + k : kCount * k + i] * x[block.first_row + k];
+    }
+    std::copy_n(result, kCount, x + block.first_row);
+  });
+}
+
+// The rows of a block in x (m, 12), multiplied by B^T from the left, into those of y, which is not x.
+void multiply_rows(const WeightBlock& block, const double* x, double* y) {
+  const std::ptrdiff_t first = 12L * block.first_row;
+  with_row_count(block, [&](auto count) {
+    constexpr int kCount = count;
+    for (std::ptrdiff_t c = first; c < first + 12; c += 4) {
+      FourLanes row[kCount];
+      for (int k = 0; k < kCount; ++k) row[k] = read<FourLanes>(x + c + 12 * k);
+      for (int i = 0; i < kCount; ++i) {
+        FourLanes sum = {};
+        for (int k = 0; k < kCount; ++k) sum += block.basis[kCount * i + k] * row[k];
+        write(sum, y + c + 12 * i);
+      }
+    }
+  });
 }
 
 bool fits(const StepProblem& problem, const WeightBlock& block) {
@@ -46,11 +66,11 @@ bool fits(const StepProblem& problem, const WeightBlock& block) {
 }  // namespace
 
 void to_basis(std::span<const WeightBlock> blocks, std::span<double> x) {
-  for (const WeightBlock& block : blocks) multiply_block<1, true>(block, x.data(), x.data());
+  for (const WeightBlock& block : blocks) multiply_entries<true>(block, x.data());
 }
 
 void from_basis(std::span<const WeightBlock> blocks, std::span<double> x) {
-  for (const WeightBlock& block : blocks) multiply_block<1, false>(block, x.data(), x.data());
+  for (const WeightBlock& block : blocks) multiply_entries<false>(block, x.data());
 }
 
 void WeightedRows::set(const StepProblem& problem, const RowWeights& weights) {
@@ -83,7 +103,7 @@ void WeightedRows::turn(std::pair<int, int> range) {
     std::copy(rows + 12L * row, rows + 12L * until, turned + 12L * row);
     row = until;
     if (row == last) break;
-    multiply_block<12, true>(*next[k], rows, turned);
+    multiply_rows(*next[k], rows, turned);
     row += next[k]++->row_count;
   }
 }
