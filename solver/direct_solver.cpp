@@ -171,7 +171,7 @@ void DirectSolver::plan_analysis(const StepProblem& problem, const Parts& parts)
 // Runs the strategies one after the other until one succeeds; each hand-over is counted. When all fail, the
 // impulses of the least residual stay.
 bool DirectSolver::run_chain(SolveSummary& summary, std::span<const double> warm_impulse) {
-  const StrategyChoice choice = choose_strategies(strategy_, step_);
+  const StrategyChoice choice = choose_strategies(strategy_, state_);
   summary.auto_reason = choice.reason;
   chain_best_.clear();
   for (int k = 0; k < choice.count; ++k) {

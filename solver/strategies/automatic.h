@@ -5,8 +5,8 @@
 //   auto            a cone or a turned box: interior-point, the only one that takes them;
 //                   all rows bilateral: pivot (its first factorisation is the answer);
 //                   otherwise by the scaled compliance C_r / d_r, which bounds how nearly redundant rows may
-//                   become dependent: pivot above kPivotCompliance, interior-point below, with newton and
-//                   pivot as nets
+//                   become dependent: pivot above kPivotCompliance; below it interior-point, with newton and
+//                   pivot as nets, unless the present impulses are nearly right: then pivot, with the others as nets
 //   anything else   itself alone
 #pragma once
 
@@ -14,7 +14,7 @@
 #include <string>
 #include <string_view>
 
-#include "solver/prepared_step.h"
+#include "solver/solve_state.h"
 
 namespace cleave {
 
@@ -24,6 +24,7 @@ struct StrategyChoice {
   std::string reason = "-";  // filled by auto
 };
 
-StrategyChoice choose_strategies(std::string_view strategy, const PreparedStep& step);
+// state: begun, with the impulses that the first strategy starts from.
+StrategyChoice choose_strategies(std::string_view strategy, SolveState& state);
 
 }  // namespace cleave

@@ -9,6 +9,7 @@
 // has stopped falling.
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "solver/slab_sweeps.h"
 #include "solver/strategies/strategy.h"
@@ -44,17 +45,13 @@ int count_changes(const std::vector<RowState>& before, const std::vector<RowStat
 class Pivot : public Strategy {
  public:
   bool run(SolveState& state) override {
-    {
-      StageTimer timer(state.tasks.clock(), Stage::predict);
-      predictor_.bind(*state.step, state.tasks);
-    }
+    is_bound_ = false;
     clamp(state);
     warm_state_ = state.state;
-    if (!state.options.session || !is_settled(state.changed_rows, warm_state_.size()))
-      sweep(state, state.options.predictor_sweeps);
+    const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
+    if (!starts_settled(state, tolerance)) sweep(state, state.options.predictor_sweeps);
     state.changed_rows = state.step->row_count();
     int least = std::numeric_limits<int>::max(), stalled = 0;
-    const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
     for (int k = 0; k < state.options.max_iterations; ++k) {
       ++state.summary->iterations;
       if (!state.factor_free()) return false;
@@ -91,6 +88,14 @@ class Pivot : public Strategy {
     state.states_from_impulses();
   }
 
+  // Whether warm states need no sweeps: few rows changed theirs in the step before, or would now.
+  static bool starts_settled(SolveState& state, double tolerance) {
+    StageTimer timer(state.tasks.clock(), Stage::predict);
+    const std::size_t rows = state.impulse.size();
+    return is_settled(count_pulled(state, tolerance), rows) ||
+           (state.options.session && is_settled(state.changed_rows, rows));
+  }
+
   // The kernel's analysis is done beside the first sweeps. On one thread it still counts as what it is.
   int run_predictor(SolveState& state, int sweeps) {
     const bool analyzes = static_cast<bool>(state.analysis);
@@ -100,9 +105,27 @@ class Pivot : public Strategy {
     return changed;
   }
 
+  // Rows that a step along their own slack alone would take to or from a bound.
+  static int count_pulled(const SolveState& state, double tolerance) {
+    const StepProblem& problem = state.step->problem();
+    const std::span<const double> diagonal = state.step->diagonal();
+    int pulled = 0;
+    for (std::size_t r = 0; r < state.impulse.size(); ++r) {
+      const double d = diagonal[r], lower = d * problem.lower[r], upper = d * problem.upper[r];
+      const double aim = d * state.impulse[r] - state.slack[r];
+      const bool is_lower = state.state[r] == RowState::lower, is_upper = state.state[r] == RowState::upper;
+      const bool leaves_lower = aim > lower + tolerance, leaves_upper = aim < upper - tolerance;
+      const bool leaves = (aim < lower - tolerance) | (aim > upper + tolerance);
+      pulled += (lower != upper) &
+                ((is_lower & leaves_lower) | (is_upper & leaves_upper) | (!is_lower & !is_upper & leaves));
+    }
+    return pulled;
+  }
+
   void sweep(SolveState& state, int sweeps) {
     if (sweeps == 0) return;
     StageTimer timer(state.tasks.clock(), Stage::predict);
+    if (!std::exchange(is_bound_, true)) predictor_.bind(*state.step, state.tasks);
     predictor_.take_in(state.impulse, state.velocity, state.tasks);
     for (int done = 0; done < sweeps; done += SlabSweeps::kMostSweeps) {
       const int changed = run_predictor(state, std::min(SlabSweeps::kMostSweeps, sweeps - done));
@@ -120,6 +143,7 @@ class Pivot : public Strategy {
   }
 
   SlabSweeps predictor_;
+  bool is_bound_ = false;  // the predictor, to the step at hand
   std::vector<RowState> warm_state_;
 };
 
