@@ -4,24 +4,24 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <utility>
 
 namespace cleave {
 namespace {
-
-// A part is a task of schur-rows, which waits for the last of them. Other kernels deal out branches of one elimination
-// tree, whatever the parts.
-double local_work(const CostFeatures& features, int threads, double PartCost::*work) {
-  std::vector<double> tasks;
-  for (const PartCost& part : features.parts) tasks.push_back(part.*work);
-  return features.kernel == CostKernel::schur_rows
-             ? longest_first_makespan(std::move(tasks), threads)
-             : std::accumulate(tasks.begin(), tasks.end(), 0.0) / threads;
-}
 
 double sum(const CostFeatures& features, double PartCost::*of_part) {
   double total = 0;
   for (const PartCost& part : features.parts) total += part.*of_part;
   return total;
+}
+
+// A part is a task of schur-rows, which waits for the last of them. Other kernels deal out branches of one elimination
+// tree, whatever the parts.
+double local_work(const CostFeatures& features, int threads, double PartCost::*work) {
+  if (features.kernel != CostKernel::schur_rows || threads == 1) return sum(features, work) / threads;
+  std::vector<double> tasks;
+  for (const PartCost& part : features.parts) tasks.push_back(part.*work);
+  return longest_first_makespan(std::move(tasks), threads);
 }
 
 using Group = CostGroup;

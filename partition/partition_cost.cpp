@@ -21,32 +21,46 @@ void PartitionCost::move(int body, int part) {
   bodies_[part].insert(std::ranges::lower_bound(bodies_[part], body), body);
 }
 
-CostFeatures PartitionCost::features_after(int from, int to) {
-  if (cost_.kernel != CostKernel::schur_rows)
-    return counter_.count(partition_.part_of_body, partition_.part_count);
-  CostFeatures features = features_;
-  int sides = 2 * features.cut_rows;
+// Whether the features at hand take less time than those before them.
+bool PartitionCost::is_cheaper() {
+  const double ms = modelled_ms(features_, cost_);
+  if (ms >= ms_) return false;
+  ms_ = ms;
+  return true;
+}
+
+// Only two parts are counted and, where that was in vain, put back: there may be thousands.
+bool PartitionCost::count_parts(int from, int to) {
+  const PartCost former_from = features_.parts[from], former_to = features_.parts[to];
+  const int former_cut_rows = features_.cut_rows;
+  int sides = 2 * former_cut_rows;
   for (const int part : {from, to}) {
-    sides -= features.parts[part].cut_rows;
-    features.parts[part] = counter_.count_part(bodies_[part], partition_.part_of_body);
-    sides += features.parts[part].cut_rows;
+    sides -= features_.parts[part].cut_rows;
+    features_.parts[part] = counter_.count_part(bodies_[part], partition_.part_of_body);
+    sides += features_.parts[part].cut_rows;
   }
-  counter_.set_interface(sides / 2, features);
-  return features;
+  counter_.set_interface(sides / 2, features_);
+  if (is_cheaper()) return true;
+  features_.parts[from] = former_from;
+  features_.parts[to] = former_to;
+  counter_.set_interface(former_cut_rows, features_);
+  return false;
+}
+
+bool PartitionCost::count_all() {
+  CostFeatures former =
+      std::exchange(features_, counter_.count(partition_.part_of_body, partition_.part_count));
+  if (is_cheaper()) return true;
+  features_ = std::move(former);
+  return false;
 }
 
 bool PartitionCost::move_if_cheaper(int body, int part) {
   const int from = partition_.part_of_body[body];
   move(body, part);
-  CostFeatures features = features_after(from, part);
-  const double ms = modelled_ms(features, cost_);
-  if (ms >= ms_) {
-    move(body, from);
-    return false;
-  }
-  features_ = std::move(features);
-  ms_ = ms;
-  return true;
+  if (cost_.kernel == CostKernel::schur_rows ? count_parts(from, part) : count_all()) return true;
+  move(body, from);
+  return false;
 }
 
 }  // namespace cleave

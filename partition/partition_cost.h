@@ -22,7 +22,10 @@ class PartitionCost {
 
  private:
   void move(int body, int part);
-  CostFeatures features_after(int from, int to);
+  // After a move between these parts. False, and nothing changed, where the time has not fallen.
+  bool count_parts(int from, int to);
+  bool count_all();
+  bool is_cheaper();
 
   const KernelCost cost_;
   CostCounter counter_;

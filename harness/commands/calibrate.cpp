@@ -86,9 +86,10 @@ void set_times(const StepRecord& row, CostSample& sample) {
   add(CostGroup::sweeps_and_assembly, row.t_s_other_ms);
 }
 
-CostSample sample_of(const StepRecord& row, const Outcome& outcome, const BodyGraph& graph) {
+CostSample sample_of(const StepRecord& row, const Outcome& outcome, const BodyGraph& graph, int cell) {
   CostSample sample{graph, {outcome.part_of_body, row.parts}, kernel_of(row.solver), row.threads};
   sample.factorizations = row.factorizations;
+  sample.cell = cell;
   set_times(row, sample);
   if (sample.kernel == CostKernel::monolithic) sample.parts = {std::vector<int>(graph.body_count(), 0), 1};
   if (sample.kernel == CostKernel::schur_rows && row.interface_unknowns > 0)
@@ -120,10 +121,12 @@ Samples measure(const std::vector<CalibrationProblem>& problems, int threads, co
     const std::vector<Outcome> outcomes =
         measure_all(combinations, problems[k].problem, static_cast<int>(k), rows);
     const BodyGraph graph = body_graph_of(problems[k].problem);
+    const std::size_t first_cell = sources.size() * rows.size();
     for (std::size_t i = 0; i < rows.size(); ++i) {
       if (rows[i].status != "ok" || rows[i].factorizations < 1) continue;
-      rows[i].fallbacks > 0 ? ++samples.handed_over
-                            : (half.push_back(sample_of(rows[i], outcomes[i], graph)), 0);
+      rows[i].fallbacks > 0
+          ? ++samples.handed_over
+          : (half.push_back(sample_of(rows[i], outcomes[i], graph, static_cast<int>(first_cell + i))), 0);
     }
     line.update(static_cast<int>(k) + 1, static_cast<int>(problems.size()));
   }
@@ -154,7 +157,8 @@ void fit(const Samples& samples, int threads, std::vector<KernelCost>& costs,
     const std::string errors =
         std::to_string(fitted.size()) + " solves fitted, median error on " + std::to_string(held_out.size()) +
         " others " + percent(median_error(held_out, costs.back(), true)) + " with what they factored, " +
-        percent(median_error(held_out, costs.back(), false)) + " from the partition alone";
+        percent(median_error(held_out, costs.back(), false)) + " from the partition alone, " +
+        percent(median_cell_error(held_out, costs.back())) + " so of the sum over a scene's steps";
     say(name + ": " + errors);
     about.emplace_back("errors_" + std::string(cost_kernel_names()[k]) + "_" + std::to_string(threads),
                        errors);

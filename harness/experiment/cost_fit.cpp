@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "harness/base/nonnegative_least_squares.h"
 
@@ -92,6 +93,21 @@ double median_error(std::span<const CostSample> samples, const KernelCost& cost,
   std::vector<double> errors;
   for (const CostSample& sample : samples)
     errors.push_back(std::abs(modelled_ms(sample, cost, counted) / sample.t_s_ms - 1));
+  return median(std::move(errors));
+}
+
+double median_cell_error(std::span<const CostSample> samples, const KernelCost& cost) {
+  struct Sums {
+    double modelled_ms = 0, measured_ms = 0;
+  };
+  std::map<int, Sums> cells;
+  for (const CostSample& sample : samples) {
+    Sums& sums = cells[sample.cell];
+    sums.modelled_ms += modelled_ms(sample, cost, false);
+    sums.measured_ms += sample.t_s_ms;
+  }
+  std::vector<double> errors;
+  for (const auto& [cell, sums] : cells) errors.push_back(std::abs(sums.modelled_ms / sums.measured_ms - 1));
   return median(std::move(errors));
 }
 

@@ -19,6 +19,7 @@ struct CostSample {
   std::array<double, kCostGroups> group_ms{};  // of which in the stages of each group
   int factorizations = 0;
   double active_share = 1;  // of the cut rows, those that were in the interface of schur-rows
+  int cell = 0;             // the same for all steps of a scene with one way to split them
 };
 
 // The number of rows of a dense interface whose factorisation takes so many flops, as cost_features.h counts them.
@@ -36,5 +37,8 @@ double modelled_ms(const CostSample& sample, const KernelCost& cost, bool counte
 
 // Median of |modelled / measured - 1|; NaN without samples.
 double median_error(std::span<const CostSample> samples, const KernelCost& cost, bool counted);
+// The same of cells, each with the sums over its solves, from the partition alone: what a choice for a scene stands on, where steps that
+// take more factorisations and fewer make up for each other.
+double median_cell_error(std::span<const CostSample> samples, const KernelCost& cost);
 
 }  // namespace cleave

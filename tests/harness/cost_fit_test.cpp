@@ -140,6 +140,25 @@ TEST(CostFit, FindsTheCostsThatMadeTheTimes) {
   EXPECT_TRUE(std::isnan(median_error({}, {}, true)));
 }
 
+// Two solves of a cell of which one takes a fifth less than modelled and one a fifth more, and a cell of its own.
+TEST(CostFit, StepsOfACellMakeUpForEachOther) {
+  const KernelCost truth{CostKernel::schur_rows,
+                         1,
+                         ExpectedFactorizations::always(3),
+                         0.5,
+                         {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5}};
+  std::vector<CostSample> samples;
+  for (const double share : {0.8, 1.2, 1.1}) {
+    samples.push_back(sample_with(truth, 1));
+    samples.back().t_s_ms = share * modelled_ms(samples.back(), truth, false);
+    samples.back().cell = samples.size() < 3 ? 1 : 2;
+  }
+  EXPECT_NEAR(median_cell_error(std::span(samples).first(2), truth), 0, 1e-12);
+  EXPECT_NEAR(median_cell_error(std::span(samples).last(1), truth), 1 - 1 / 1.1, 1e-12);
+  EXPECT_NEAR(median_error(samples, truth, false), 1 - 1 / 1.2,
+              1e-12);  // of 1 / 0.8 - 1, 1 - 1 / 1.2 and 1 - 1 / 1.1
+}
+
 // As many as the law says, rounded.
 TEST(CostFit, FindsHowOftenAStepFactors) {
   const ExpectedFactorizations law{-0.6, 0.5, -0.3, 50};
