@@ -8,7 +8,7 @@
 
 namespace cleave {
 
-// Octets that a group may still join, the oldest first. So many at most: of one body in very many groups, each needs an
+// Octets that a group may still join, the oldest first. Sixteen at most: of one body in very many groups, each needs an
 // octet of its own.
 class OpenOctets {
  public:

@@ -159,14 +159,16 @@ double SolveState::residual() {
   });
 }
 
-int SolveState::find_violations(double tolerance) {
+int SolveState::find_violations(double tolerance, Violated when) {
   StageTimer timer(tasks.clock(), Stage::check);
   const StepProblem& problem = step->problem();
   const std::span<const double> diagonal = step->diagonal();
   // Without branches, which would be guessed wrong. 0 times a bound that is infinite is beyond nothing.
   const auto is_violated = [&](int r) {
     const double lower = problem.lower[r], upper = problem.upper[r], d = diagonal[r];
-    const bool out = ((lower - impulse[r]) * d > tolerance) | ((impulse[r] - upper) * d > tolerance);
+    const double pull = when == Violated::now ? 0.0 : slack[r];
+    const bool out =
+        ((lower - impulse[r]) * d + pull > tolerance) | ((impulse[r] - upper) * d - pull > tolerance);
     const bool leaves_lower = slack[r]<-tolerance, leaves_upper = slack[r]> tolerance;
     const bool is_free = state[r] == RowState::free, is_lower = state[r] == RowState::lower;
     return (lower != upper) &

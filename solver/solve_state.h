@@ -83,9 +83,10 @@ struct SolveState {
   // correct_free until w on the free rows is below `target` or no longer falls; returns the largest |w| left.
   double refine_free(double target, int most_steps, bool count);
 
-  // Rows whose impulse left its bounds, or whose slack has the wrong sign, beyond `tolerance` (m/s); fills
-  // `violated` and moves nothing.
-  int find_violations(double tolerance);
+  // Rows whose impulse left its bounds, or would after a step along its own slack, or whose slack has the wrong sign, beyond
+  // `tolerance` (m/s); fills `violated` and moves nothing.
+  enum class Violated { now, after_a_step };
+  int find_violations(double tolerance, Violated when = Violated::now);
 
   // Solves on the present row states and flips what is violated, while the number of violations falls, a few
   // times. True when none is left.

@@ -92,8 +92,8 @@ class Pivot : public Strategy {
   static bool starts_settled(SolveState& state, double tolerance) {
     StageTimer timer(state.tasks.clock(), Stage::predict);
     const std::size_t rows = state.impulse.size();
-    return is_settled(count_pulled(state, tolerance), rows) ||
-           (state.options.session && is_settled(state.changed_rows, rows));
+    return (state.options.session && is_settled(state.changed_rows, rows)) ||
+           is_settled(state.find_violations(tolerance, SolveState::Violated::after_a_step), rows);
   }
 
   // The kernel's analysis is done beside the first sweeps. On one thread it still counts as what it is.
@@ -103,23 +103,6 @@ class Pivot : public Strategy {
     if (analyzes && state.tasks.threads() == 1)
       state.tasks.clock().move(Stage::predict, Stage::analyze, state.analysis_ms);
     return changed;
-  }
-
-  // Rows that a step along their own slack alone would take to or from a bound.
-  static int count_pulled(const SolveState& state, double tolerance) {
-    const StepProblem& problem = state.step->problem();
-    const std::span<const double> diagonal = state.step->diagonal();
-    int pulled = 0;
-    for (std::size_t r = 0; r < state.impulse.size(); ++r) {
-      const double d = diagonal[r], lower = d * problem.lower[r], upper = d * problem.upper[r];
-      const double aim = d * state.impulse[r] - state.slack[r];
-      const bool is_lower = state.state[r] == RowState::lower, is_upper = state.state[r] == RowState::upper;
-      const bool leaves_lower = aim > lower + tolerance, leaves_upper = aim < upper - tolerance;
-      const bool leaves = (aim < lower - tolerance) | (aim > upper + tolerance);
-      pulled += (lower != upper) &
-                ((is_lower & leaves_lower) | (is_upper & leaves_upper) | (!is_lower & !is_upper & leaves));
-    }
-    return pulled;
   }
 
   void sweep(SolveState& state, int sweeps) {
