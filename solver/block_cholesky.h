@@ -48,6 +48,7 @@ class BlockCholesky {
   void make_update(int supernode, int row_strip, int column_strip);
   FrontTiles front(int supernode);
 
+  // Substitution (block_substitution.cpp).
   // x <- L^-1 x and x <- L^-T x, x in position order, 6 doubles each. One branch after its child branches, or after
   // its parent; each writes to its own places of x alone, and forward leaves what it adds above to its parent.
   void forward(int branch, double* x);

@@ -1,132 +1,20 @@
 #include "solver/worker_team.h"
 
-#include <execinfo.h>
 #include <immintrin.h>
 #include <omp.h>
-#include <signal.h>
-#include <sys/resource.h>
 
 #include <algorithm>
-#include <charconv>
-#include <chrono>
-#include <cstdlib>
-#include <cstring>
 #include <map>
 #include <memory>
-#include <new>
-#include <optional>
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <system_error>
 #include <utility>
-#include <vector>
+
+#include "solver/look_out.h"
+#include "solver/thread_making.h"
 
 namespace cleave {
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// How long a thread looks out before it sleeps. Waking one takes some ten microseconds, so gaps shorter than
-// that are best spent awake; on an idle machine longer ones too, because every stage of a solve begins with a
-// wake-up otherwise. On a busy machine a long look-out is taken from the thread's own share of its core,
-// which it then lacks when there is work.
-constexpr std::chrono::microseconds kLookOut{50}, kLongLookOut{2000};
-// A thread that was pushed off its core within this time takes the machine for busy.
-constexpr std::chrono::milliseconds kBusyFor{100};
-
-template <class Condition>
-bool look_out_for(Clock::duration time, Condition done) {
-  constexpr int kLooksPerClock = 32;
-  const auto end = Clock::now() + time;
-  do {
-    for (int k = 0; k < kLooksPerClock; ++k) {
-      if (done()) return true;
-      _mm_pause();
-    }
-  } while (Clock::now() < end);
-  return false;
-}
-
-bool was_pushed_off_lately() {
-  thread_local long switches = 0;
-  thread_local Clock::time_point busy_until{};
-  rusage usage{};
-  ::getrusage(RUSAGE_THREAD, &usage);
-  const auto now = Clock::now();
-  if (std::exchange(switches, usage.ru_nivcsw) != usage.ru_nivcsw) busy_until = now + kBusyFor;
-  return now < busy_until;
-}
-
-// CLEAVE_LOOK_OUT_US in the environment: so many microseconds, whatever the machine does. Throws
-// std::invalid_argument where it is no number.
-const std::optional<Clock::duration>& asked_look_out() {
-  static const std::optional<Clock::duration> asked = []() -> std::optional<Clock::duration> {
-    const char* text = std::getenv("CLEAVE_LOOK_OUT_US");
-    if (text == nullptr) return std::nullopt;
-    int microseconds = -1;
-    const char* end = text + std::strlen(text);
-    const auto [last, error] = std::from_chars(text, end, microseconds);
-    if (error != std::errc{} || last != end || microseconds < 0)
-      throw std::invalid_argument("CLEAVE_LOOK_OUT_US: '" + std::string(text) +
-                                  "' is not a whole number of microseconds in [0, 2147483647]");
-    return std::chrono::microseconds(microseconds);
-  }();
-  return asked;
-}
-
-// Whether `done` came true before it was time to sleep.
-template <class Condition>
-bool look_out(Condition done) {
-  if (asked_look_out()) return look_out_for(*asked_look_out(), done);
-  return look_out_for(kLookOut, done) || (!was_pushed_off_lately() && look_out_for(kLongLookOut, done));
-}
-
-// OpenMP ends the program where the system makes no more threads. So as many are made by somebody who says so.
-void check_threads(int count) {
-  std::atomic<bool> all_made{false};
-  std::vector<std::thread> threads;
-  threads.reserve(count);
-  std::string refusal;
-  try {
-    while (static_cast<int>(threads.size()) < count)
-      threads.emplace_back([&all_made] { all_made.wait(false); });
-  } catch (const std::system_error& error) {
-    refusal = "the system makes " + std::to_string(threads.size()) + " of " + std::to_string(count) +
-              " threads: " + error.what();
-  }
-  all_made = true;
-  all_made.notify_all();
-  for (std::thread& thread : threads) thread.join();
-  if (!refusal.empty()) throw std::runtime_error(refusal);
-}
-
-// OpenMP's threads end by pthread_exit, for which the C library loads its unwinder the first time it needs it, and ends
-// the program where there is no memory left then. So it is made to need it now.
-void load_unwinder() {
-  void* caller = nullptr;
-  if (::backtrace(&caller, 1) == 0) throw std::bad_alloc();
-}
-
-// Threads made meanwhile, and those that they make, leave signals that ask the program to stop to the others: somebody
-// who holds such a signal back in his own thread (METIS needs that) would else find it taken here.
-class SignalsHeldBack {
- public:
-  SignalsHeldBack() {
-    sigset_t stop;
-    ::sigemptyset(&stop);
-    for (const int signal : {SIGINT, SIGTERM}) ::sigaddset(&stop, signal);
-    ::pthread_sigmask(SIG_BLOCK, &stop, &before_);
-  }
-  SignalsHeldBack(const SignalsHeldBack&) = delete;
-  SignalsHeldBack& operator=(const SignalsHeldBack&) = delete;
-  ~SignalsHeldBack() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-
- private:
-  sigset_t before_;
-};
-
-}  // namespace
 
 WorkerTeam::WorkerTeam(int threads)
     : threads_(threads), queues_(std::make_unique<Queue[]>(threads)), home_count_(threads) {

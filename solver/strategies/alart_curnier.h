@@ -32,9 +32,10 @@ namespace cleave {
 
 class AlartCurnier {
  public:
-  // From zero impulses and then from those of the step before, a few steps from each and then all of them, until the residual is within the limit. The impulses of the least
-  // residual stay, the present ones included. False where none is within it, or where the problem is none for it: more rows than LU
-  // is worth its time for, turned boxes, or cones without the law. What LU needs is not in the predicted memory.
+  // From zero impulses and then from those of the step before, a few steps from each and then all of them, until the residual is
+  // within the limit. The impulses of the least residual stay, the present ones included. False where none is within it, or where
+  // the problem is none for it: more rows than LU is worth its time for, turned boxes, or cones without the law. What LU needs is
+  // not in the predicted memory.
   bool run(SolveState& state, std::span<const double> warm_impulse);
 
  private:

@@ -4,23 +4,19 @@
 // one) where bounds cut the step short. On 200 rocks a back-substitution costs a fifth of assembly and
 // factorisation, on more of them less; the corrections save a sixth of the iterations.
 //
-// Once the error is small the active set can be read off (s against z); an exact solve on that set then ends
-// the iteration with the accuracy of a pivoting method. Cones have no such set; cone_newton.h ends their iteration. Where the set
-// is not yet right, the iteration goes on, and where rounding keeps the set from ever being right, the best interior iterate is
-// the answer if it is within the limit.
+// Once the error is small an exact solve ends the iteration (interior_end.h). Where that finds no answer yet, the iteration goes
+// on, and where rounding keeps it from ever finding one, the best interior iterate is the answer if it is within the limit.
 //
 // Under Coulomb's law every direction is that of the law (coulomb_shift.h). The problem is then not convex, and the iteration may
-// stall where the Newton method of the end does not: that is tried before the first iteration, from the impulses of the step
-// before, and again where iterations make no progress; the method of alart_curnier.h comes last. Where all of it fails, status and
-// residual say so.
+// stall where the exact solve does not: that is tried before the first iteration, from the impulses of the step before, and
+// again where iterations make no progress. Where all of it fails, status and residual say so.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "solver/strategies/alart_curnier.h"
-#include "solver/strategies/cone_newton.h"
 #include "solver/strategies/interior_constants.h"
+#include "solver/strategies/interior_end.h"
 #include "solver/strategies/interior_iterate.h"
 #include "solver/strategies/strategy.h"
 
@@ -32,9 +28,9 @@ namespace {
 constexpr double kShiftAccuracy = 0.1;
 constexpr int kMostShifts = 8;
 
-// Attempts at the end under Coulomb's law: below this error, in units of the velocity scale, and again at this share of it; after
-// so many iterations without progress, and again where the error is this share of the last attempt's.
-constexpr double kFirstLawPolish = 1e-5, kNextLawPolish = 0.1;
+// Further attempts at the end under Coulomb's law: at this share of the error of the one before; after so many iterations without
+// progress, and again where the error is this share of the last attempt's.
+constexpr double kNextLawPolish = 0.1;
 constexpr int kStalledIterations = 5;
 constexpr double kNextStalledPolish = 0.5;
 // So many without progress, and the iteration ends. Of 490 steps of Rock Pile and 49 of Large Rock Pile those that came right had at
@@ -43,7 +39,8 @@ constexpr int kHopelessIterations = 20;
 
 class InteriorPoint : public Strategy {
  public:
-  explicit InteriorPoint(const InteriorConstants& constants) : constants_(constants), iterate_(constants) {}
+  explicit InteriorPoint(const InteriorConstants& constants)
+      : constants_(constants), iterate_(constants), end_(constants) {}
   bool run(SolveState& state) override;
   SetKind takes() const override { return SetKind::cones; }
 
@@ -51,26 +48,17 @@ class InteriorPoint : public Strategy {
   enum class Progress { good, finished, rounding };
   void begin(SolveState& state);
   Progress watch(SolveState& state, double error);
-  bool polish(SolveState& state);
-  bool polish_cones(SolveState& state, double tolerance);
-  bool polish_rows(SolveState& state, double tolerance);
-  bool polish_best(SolveState& state);
   bool is_stalled() const;
   bool is_hopeless() const { return has_coulomb_ && since_best_ >= kHopelessIterations; }
-  bool end(SolveState& state);
+  bool finish(SolveState& state);
   void step(SolveState& state, double error);
   void adapt_delta(double rounding);
   bool raise_delta();
   bool is_poor() const;
-  double first_polish(double least_compliance) const;
 
   InteriorConstants constants_;
   InteriorIterate iterate_;
-  ConeNewton newton_;
-  AlartCurnier last_;
-  std::vector<double> kept_impulse_, present_impulse_, warm_impulse_;
-  std::vector<double> law_impulse_;  // of the attempts under Coulomb's law, those of the least residual
-  double least_law_residual_ = 0;
+  InteriorEnd end_;
   double last_polish_ = 0;  // the error of the last attempt at the end
   double best_error_ = 0, last_step_ = 1, polish_below_ = 0;
   int since_best_ = 0, grown_ = 0, raises_ = 0;
@@ -117,46 +105,6 @@ void InteriorPoint::step(SolveState& state, double error) {
   iterate_.advance(state, last_step_);
 }
 
-// The semi-smooth Newton method. Under Coulomb's law what it came nearest with is kept.
-bool InteriorPoint::polish_cones(SolveState& state, double tolerance) {
-  const double residual = newton_.run(state, tolerance);
-  if (residual <= state.step->exact_limit_m_per_s()) return true;
-  if (has_coulomb_ && residual < least_law_residual_) {
-    least_law_residual_ = residual;
-    law_impulse_ = state.impulse;
-  }
-  return false;
-}
-
-// Reads the active set off the slacks and multipliers and solves on it exactly, flipping what is still wrong
-// a few times.
-bool InteriorPoint::polish_rows(SolveState& state, double tolerance) {
-  const Settling settling{constants_.polish_rounds, constants_.polish_refinements,
-                          constants_.polish_violations, constants_.polish_violated_share};
-  iterate_.read_active_set(state);
-  return state.settle(tolerance, settling) && state.residual() <= state.step->exact_limit_m_per_s();
-}
-
-// The end from the present impulses, which are restored on failure.
-bool InteriorPoint::polish(SolveState& state) {
-  const double tolerance =
-      constants_.polish_accuracy * state.options.target_m_per_s * state.step->velocity_scale();
-  kept_impulse_ = state.impulse;
-  const bool has_cones = !state.step->set().cones().empty();
-  if (has_cones ? polish_cones(state, tolerance) : polish_rows(state, tolerance)) return true;
-  state.load(kept_impulse_);
-  return false;
-}
-
-// From the best iterate; on failure the iteration goes on from the present one.
-bool InteriorPoint::polish_best(SolveState& state) {
-  present_impulse_ = state.impulse;
-  iterate_.load_kept_impulses(state);
-  if (polish(state)) return true;
-  state.load(present_impulse_);
-  return false;
-}
-
 // Keeps the best iterate. Finished: within the limit, and no better for a while. Rounding: full steps, but a
 // growing error. The error of cones does not see that the start is inside them where the impulses are not: impulses of the step
 // before may be better than the first iterates, which are none the worse for it.
@@ -179,21 +127,11 @@ InteriorPoint::Progress InteriorPoint::watch(SolveState& state, double error) {
   return grown_ >= constants_.patience ? Progress::rounding : Progress::good;
 }
 
-double InteriorPoint::first_polish(double least_compliance) const {
-  return least_compliance >= constants_.soft_compliance    ? constants_.soft_polish
-         : least_compliance >= constants_.firm_compliance  ? constants_.firm_polish
-         : least_compliance >= constants_.stiff_compliance ? constants_.stiff_polish
-                                                           : constants_.rigid_polish;
-}
-
 void InteriorPoint::begin(SolveState& state) {
   const double least = state.step->least_relative_compliance();
   has_coulomb_ = state.step->set().has_coulomb();
-  if (has_coulomb_) warm_impulse_ = state.impulse;
-  const double first = has_coulomb_                        ? kFirstLawPolish
-                       : state.step->set().cones().empty() ? first_polish(least)
-                                                           : ConeNewton::first_residual(least);
-  polish_below_ = first * state.step->velocity_scale();
+  end_.begin(state);
+  polish_below_ = end_.first_error(state) * state.step->velocity_scale();
   delta_ = constants_.first_delta;
   best_delta_ = delta_;
   least_delta_ = constants_.least_delta;
@@ -201,7 +139,7 @@ void InteriorPoint::begin(SolveState& state) {
   best_error_ = std::numeric_limits<double>::infinity();
   since_best_ = grown_ = raises_ = 0;
   is_start_ = true;
-  least_law_residual_ = last_polish_ = std::numeric_limits<double>::infinity();
+  last_polish_ = std::numeric_limits<double>::infinity();
 }
 
 // Under Coulomb's law: no progress since iterations, and since the last attempt at the end so much that another may go elsewhere.
@@ -212,7 +150,7 @@ bool InteriorPoint::is_stalled() const {
 
 bool InteriorPoint::run(SolveState& state) {
   begin(state);
-  if (has_coulomb_ && polish(state)) return true;
+  if (has_coulomb_ && end_.attempt(state, iterate_)) return true;
   iterate_.start(state);
   const double target = state.options.target_m_per_s * state.step->velocity_scale();
   for (int k = 0; k < state.options.max_iterations; ++k) {
@@ -226,12 +164,12 @@ bool InteriorPoint::run(SolveState& state) {
       since_best_ = grown_ = 0;
     }
     if (error <= polish_below_) {
-      if (polish(state)) return true;
+      if (end_.attempt(state, iterate_)) return true;
       if (error <= target) break;
       polish_below_ = std::max((has_coulomb_ ? kNextLawPolish : constants_.next_polish) * error, target);
       last_polish_ = error;
     } else if (is_stalled()) {
-      if (polish_best(state)) return true;
+      if (end_.attempt_from_best(state, iterate_)) return true;
       last_polish_ = best_error_;
     }
     ++state.summary->iterations;
@@ -241,15 +179,12 @@ bool InteriorPoint::run(SolveState& state) {
       break;
     }
   }
-  return end(state);
+  return finish(state);
 }
 
-// The best iterate, or what an attempt under Coulomb's law came nearer with, or comes with now.
-bool InteriorPoint::end(SolveState& state) {
+bool InteriorPoint::finish(SolveState& state) {
   iterate_.restore(state);
-  if (least_law_residual_ < state.residual()) state.load(law_impulse_);
-  if (state.residual() <= state.step->exact_limit_m_per_s()) return true;
-  return has_coulomb_ && last_.run(state, warm_impulse_);
+  return end_.last_resort(state);
 }
 
 }  // namespace
