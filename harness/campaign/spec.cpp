@@ -8,6 +8,7 @@
 #include "harness/base/names.h"
 #include "harness/campaign/cell_label.h"
 #include "harness/campaign/spec_grid.h"
+#include "harness/experiment/option_values.h"
 #include "harness/experiment/options.h"
 #include "scenarios/scene.h"
 

@@ -9,6 +9,7 @@
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
 #include "harness/experiment/friction.h"
+#include "harness/experiment/option_values.h"
 #include "harness/experiment/options.h"
 #include "harness/experiment/step_columns.h"
 #include "harness/files/problem_file.h"

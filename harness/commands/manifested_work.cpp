@@ -6,11 +6,12 @@
 
 #include "harness/base/printable_text.h"
 #include "harness/commands/command.h"
+#include "harness/experiment/option_values.h"
 #include "harness/experiment/step_record.h"
 #include "harness/files/checksums.h"
 #include "harness/files/directory_lock.h"
 #include "harness/files/output_directory.h"
-#include "harness/world/ode_world.h"
+#include "harness/world/ode_library.h"
 
 namespace cleave {
 namespace {

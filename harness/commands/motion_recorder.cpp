@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "harness/experiment/body_marks.h"
+#include "harness/experiment/option_values.h"
 #include "harness/experiment/problem_graph.h"
 #include "harness/world/extract_shapes.h"
 

@@ -16,6 +16,8 @@
 #include "harness/commands/turned_problem.h"
 #include "harness/experiment/combination.h"
 #include "harness/experiment/friction.h"
+#include "harness/experiment/option_overrides.h"
+#include "harness/experiment/option_values.h"
 #include "harness/experiment/options.h"
 #include "harness/experiment/step_columns.h"
 #include "harness/files/csv_recorder.h"

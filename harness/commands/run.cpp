@@ -6,6 +6,7 @@
 #include "harness/commands/run_command_line.h"
 #include "harness/commands/simulate.h"
 #include "harness/experiment/model_watch.h"
+#include "harness/experiment/option_values.h"
 #include "harness/experiment/options.h"
 #include "harness/files/build_info.h"
 #include "harness/files/json_writer.h"

@@ -9,6 +9,7 @@
 #include "harness/commands/manifested_work.h"
 #include "harness/commands/motion_recorder.h"
 #include "harness/experiment/model_watch.h"
+#include "harness/experiment/option_values.h"
 #include "harness/files/csv_recorder.h"
 #include "harness/files/output_directory.h"
 #include "harness/files/whole_file.h"

@@ -81,6 +81,38 @@ void set_split(const Repeats& repeats, StepRecord& row) {
       repeats, [](const auto& repeat) { return repeat.split->partition_ms + repeat.split->refine_ms; });
 }
 
+void describe_split(const Split& split, Outcome& outcome) {
+  outcome.part_of_body = split.parts.part_of_body;
+  outcome.parent_of_part = split.parent_of_part;
+  outcome.origin = split.origin;
+  outcome.choice = split.parts.choice;
+}
+
+void set_outcome(const Outcome& outcome, StepRecord& row) {
+  row.status = to_string(outcome.status);
+  row.ode_messages += outcome.summary.engine_messages;
+  row.set_summary(outcome.summary);
+  if (outcome.solved()) row.set_model(outcome.model);
+  row.peak_memory_mb = peak_memory_mb();
+}
+
+template <class Repeat>
+double total_ms(const Repeat& repeat) {
+  return repeat.outcome.summary.times.total_ms;
+}
+
+// Of repeats that were all solved, and of the one that the row is of.
+template <class Repeats>
+void set_times(const Repeats& repeats, const Outcome& outcome, StepRecord& row) {
+  const auto [least, most] =
+      std::ranges::minmax_element(repeats, {}, [](const auto& repeat) { return total_ms(repeat); });
+  row.t_s_min_ms = total_ms(*least);
+  row.t_s_max_ms = total_ms(*most);
+  row.t_s_cpu_ms = outcome.cores.cpu_ms;
+  row.t_s_waiting_ms = outcome.cores.waiting_ms;
+  row.solution_hash = hex(solution_hash(outcome.solution.impulse, outcome.part_of_body));
+}
+
 // A solver that returned nothing left nothing to judge.
 void set_verdict(const StepProblem& problem, const Outcome& outcome, StepRecord& row) {
   if (outcome.status != SolveStatus::ok && !outcome.summary.message.empty())
@@ -187,46 +219,34 @@ Outcome Combination::solve(const StepProblem& problem, int step) {
   return std::move(solved.outcome);
 }
 
-Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
+std::vector<Combination::Repeat> Combination::repeat_all(const StepProblem& problem, int step) {
   std::vector<Repeat> repeats;
   for (int i = 0; i < repeats_; ++i) {
-    repeats.push_back(repeat(problem, row.step));
+    repeats.push_back(repeat(problem, step));
     if (!repeats.back().outcome.solved()) break;  // a failure has no time to take the median of
     // What one solve leaves in the solver's scratch must not reach the next, or repeats would time another
     // problem.
     assert(same_bytes(repeats.back().outcome.solution.impulse, repeats.front().outcome.solution.impulse));
   }
-  const auto total_ms = [](const Repeat& repeat) { return repeat.outcome.summary.times.total_ms; };
-  const bool failed = !repeats.back().outcome.solved();
-  Repeat& chosen = failed ? repeats.back() : repeats[median_index(repeats, total_ms)];
+  return repeats;
+}
+
+Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
+  std::vector<Repeat> repeats = repeat_all(problem, row.step);
+  const bool solved = repeats.back().outcome.solved();
+  Repeat& chosen = solved ? repeats[median_index(repeats, total_ms<Repeat>)] : repeats.back();
   judge_outcome(problem, chosen.outcome);
   remember(repeats.front().split);
 
   set_names(row);
   row.repeat_count = static_cast<int>(repeats.size());
-  row.status = to_string(chosen.outcome.status);
-  row.ode_messages += chosen.outcome.summary.engine_messages;
   if (repeats.front().split) set_split(repeats, row);
-  row.set_summary(chosen.outcome.summary);
-  if (chosen.outcome.solved()) row.set_model(chosen.outcome.model);
-  row.peak_memory_mb = peak_memory_mb();
+  if (chosen.split) describe_split(*chosen.split, chosen.outcome);
+  set_outcome(chosen.outcome, row);
   set_verdict(problem, chosen.outcome, row);
-  if (chosen.split) {
-    chosen.outcome.part_of_body = chosen.split->parts.part_of_body;
-    chosen.outcome.parent_of_part = chosen.split->parent_of_part;
-    chosen.outcome.origin = chosen.split->origin;
-    chosen.outcome.choice = chosen.split->parts.choice;
-  }
   if (chosen.outcome.solved())
     set_measures(problem, chosen.split ? &chosen.split->graph : nullptr, chosen.outcome, row);
-  if (!failed) {
-    const auto [least, most] = std::ranges::minmax_element(repeats, {}, total_ms);
-    row.t_s_min_ms = total_ms(*least);
-    row.t_s_max_ms = total_ms(*most);
-    row.t_s_cpu_ms = chosen.outcome.cores.cpu_ms;
-    row.t_s_waiting_ms = chosen.outcome.cores.waiting_ms;
-    row.solution_hash = hex(solution_hash(chosen.outcome.solution.impulse, chosen.outcome.part_of_body));
-  }
+  if (solved) set_times(repeats, chosen.outcome, row);
   return std::move(chosen.outcome);
 }
 

@@ -93,6 +93,7 @@ class Combination {
   std::optional<Split> split(const StepProblem& problem, int step) const;
   void remember(const std::optional<Split>& split);
   Repeat repeat(const StepProblem& problem, int step);
+  std::vector<Repeat> repeat_all(const StepProblem& problem, int step);
   void solve_parts(const StepProblem& problem, const Parts& parts, Outcome& outcome);
 
   CombinationName name_;

@@ -4,15 +4,12 @@
 #include <cassert>
 #include <cmath>
 #include <set>
-#include <stdexcept>
-#include <string_view>
 
-#include "harness/base/hash.h"
 #include "harness/base/names.h"
-#include "harness/experiment/chosen_kernel.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/memory_limit.h"
-#include "harness/experiment/splitter.h"
+#include "harness/experiment/option_errors.h"
+#include "harness/experiment/option_overrides.h"
 #include "harness/world/ode_baselines.h"
 #include "partition/registry.h"
 #include "solver/registry.h"
@@ -22,18 +19,6 @@ namespace {
 
 using Given = std::map<std::string, std::string>;
 constexpr const char* kOutIsRequired = "is required: the directory for steps.csv and manifest.json";
-
-[[noreturn]] void reject(const std::string& option, const std::string& text) {
-  throw std::invalid_argument("--" + option + ": " + text);
-}
-
-void require(const Given& given, const std::string& option, const std::string& text) {
-  if (!given.contains(option)) reject(option, text);
-}
-
-void exclude(const Given& given, const std::string& option, const std::string& text) {
-  if (given.contains(option)) reject(option, text);
-}
 
 RunOptions options_with(const CommonValues& common) {
   RunOptions options;
@@ -126,115 +111,7 @@ void read_friction(RunOptions& options) {
              "pyramid follows normal forces, which --friction constant does not; allowed: limits");
 }
 
-// Replaces one or both halves of every solver name.
-void override_solvers(const Given& given, RunOptions& options) {
-  if (!given.contains("strategy") && !given.contains("kernel")) return;
-  if (given.contains("strategy")) check_name("--strategy", options.strategy, names_for("strategy"));
-  if (given.contains("kernel")) check_name("--kernel", options.kernel, names_for("kernel"));
-  std::vector<std::string> changed;
-  for (const Algorithm& solver : options.solvers) {
-    SolverHalves halves = solver_halves(solver.name);
-    if (halves.strategy.empty())
-      reject("solver",
-             "'" + solver.name + "' has neither strategy nor kernel; leave out --strategy and --kernel");
-    if (!options.strategy.empty()) halves.strategy = options.strategy;
-    if (!options.kernel.empty()) halves.kernel = options.kernel;
-    changed.push_back(halves.strategy + ":" + halves.kernel + solver.text.substr(solver.name.size()));
-  }
-  options.solvers = read_list("solver", joined(changed, ","), options.common);
-}
-
-constexpr std::string_view kOfCost = "-cost";
-
-// What lowers the modelled time in the refiner's place: itself, or the one that is called after it.
-std::string refiner_of_cost(const std::string& name) {
-  if (name == "none" || name.ends_with(kOfCost)) return name;
-  const std::vector<std::string> names = names_of(refiners());
-  const std::string of_cost = name + std::string(kOfCost);
-  if (std::ranges::count(names, of_cost) > 0) return of_cost;
-  std::vector<std::string> allowed = {"none"};
-  for (const std::string& other : names)
-    if (other.ends_with(kOfCost)) allowed.push_back(other.substr(0, other.size() - kOfCost.size()));
-  reject("objective",
-         "cost is none of refiner '" + name + "'; allowed with it: --refiner " + joined(allowed, ","));
-}
-
-// Replaces every refiner by the one that has the objective.
-void override_refiners(RunOptions& options) {
-  if (options.objective == Objective::rows) return;
-  std::vector<std::string> changed;
-  for (const Algorithm& refiner : options.refiners)
-    changed.push_back(refiner_of_cost(refiner.name) + refiner.text.substr(refiner.name.size()));
-  options.refiners = read_list("refiner", joined(changed, ","), options.common);
-}
-
-// Why the run cannot have its bodies split by it; empty: it can.
-std::string why_unable(const Algorithm& partitioner, const RunOptions& options) {
-  if (options.skip_small_islands && !partitioner.settings.has("max-bodies"))
-    return "which has no max-bodies, as --skip-small-islands needs";
-  const bool keeps_to_bound = make_partitioner(partitioner)->promised().at_most_max_bodies;
-  for (const Algorithm& solver : options.solvers)
-    if (arity_of(solver) && !keeps_to_bound)
-      return "which keeps to no max-bodies, as " + solver.text + " needs";
-  for (const Algorithm& solver : options.solvers)
-    if (solver_halves(solver.name).kernel == kChosenKernel && !partitioner.settings.has("cost-kernel"))
-      return "which chooses its parts for no kernel, as " + solver.text + " needs";
-  const bool has_groups = options.scene.name.empty() || names_groups(options.scene);
-  if (needs_groups(partitioner) && !has_groups)
-    return "which splits by groups of bodies, and scene " + options.scene.name + " names none";
-  return {};
-}
-
-// What `all` stands for can do what is asked of it; what is named beside it is refused elsewhere if it cannot.
-void leave_out_unable(const Given& given, RunOptions& options) {
-  const auto found = given.find("partitioner");
-  if (found == given.end()) return;
-  const std::vector<std::string> items = split_list(found->second);
-  if (std::ranges::count(items, "all") == 0) return;
-  for (const Algorithm& partitioner : options.partitioners)
-    if (std::ranges::count(items, partitioner.text) == 0) options.of_all.push_back(partitioner.text);
-  leave_out_of_all([&](const Algorithm& partitioner) { return why_unable(partitioner, options); }, options);
-}
-
-OptionKind option_kind(const Parameter& parameter) {
-  switch (parameter.kind) {
-    case Parameter::Kind::integer:
-    case Parameter::Kind::number:
-      return OptionKind::number;
-    case Parameter::Kind::flag:
-      return OptionKind::flag;
-    default:
-      return OptionKind::text;
-  }
-}
-
-NamedAlgorithm named(const std::string& kind, const Algorithm& algorithm) {
-  NamedAlgorithm named{kind, algorithm.text, algorithm.name, {}, {}};
-  for (const Parameter& parameter : parameters_of(kind, algorithm.name)) {
-    if (parameter.kind == Parameter::Kind::path) continue;
-    named.parameters[parameter.name] = algorithm.settings.text(parameter.name);
-    named.defaults[parameter.name] = default_of(parameter);
-  }
-  if (kind != "solver") return named;
-  const SolverHalves halves = solver_halves(algorithm.name);
-  if (halves.strategy.empty()) return named;
-  named.parameters["strategy"] = named.defaults["strategy"] = halves.strategy;
-  named.parameters["kernel"] = named.defaults["kernel"] = halves.kernel;
-  return named;
-}
-
 }  // namespace
-
-void leave_out_of_all(const std::function<std::string(const Algorithm& partitioner)>& why,
-                      RunOptions& options) {
-  std::erase_if(options.partitioners, [&](const Algorithm& partitioner) {
-    if (std::ranges::count(options.of_all, partitioner.text) == 0) return false;
-    const std::string reason = why(partitioner);
-    if (!reason.empty())
-      options.left_out.push_back("--partitioner all leaves out " + partitioner.text + ", " + reason);
-    return !reason.empty();
-  });
-}
 
 RunOptions default_run_options() { return options_with({}); }
 
@@ -300,39 +177,6 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
              std::string(ode.name) + " is ODE's own and needs the world of a run; a problem file holds none");
   options.memory_limit_bytes = memory_limit_bytes(options.memory_limit_gb);
   return options;
-}
-
-std::vector<OptionValue> option_values(const RunOptions& options) {
-  std::vector<OptionValue> values;
-  for (const OptionSpec& spec : run_option_specs())
-    values.push_back({spec.name, spec.kind, spec.get(options), spec.about, spec.in_run_id});
-  for (const auto& [parameter, owners, about, in_replay] : common_parameters()) {
-    const auto found = options.common.find(parameter.name);
-    values.push_back({parameter.name, option_kind(parameter),
-                      found != options.common.end() ? found->second : default_of(parameter), about});
-  }
-  if (!options.scene.name.empty())
-    for (const Parameter& parameter : scene_row(options.scene).parameters)
-      if (parameter.kind != Parameter::Kind::path)
-        values.push_back(
-            {parameter.name, OptionKind::text, options.scene.settings.text(parameter.name), About::problem});
-  if (!options.at.empty()) values.push_back({"at", OptionKind::text, joined_numbers(options.at)});
-  return values;
-}
-
-std::vector<NamedAlgorithm> named_algorithms(const RunOptions& options) {
-  std::vector<NamedAlgorithm> list;
-  for (const Algorithm& algorithm : options.partitioners) list.push_back(named("partitioner", algorithm));
-  for (const Algorithm& algorithm : options.refiners) list.push_back(named("refiner", algorithm));
-  for (const Algorithm& algorithm : options.solvers) list.push_back(named("solver", algorithm));
-  return list;
-}
-
-std::string run_id(std::span<const OptionValue> values) {
-  Fnv1a64 hash;
-  for (const OptionValue& value : values)
-    if (value.in_run_id) hash.add(value.name + "=" + value.text + "\n");
-  return hex(hash.value());
 }
 
 }  // namespace cleave

@@ -70,11 +70,6 @@ struct RunOptions {
   std::vector<std::string> of_all;    // partitioners that stand for `all`, not named beside it
 };
 
-// Takes out of options.partitioners those that stand for `all` and that `why` gives a reason for ("which ..."); the reason
-// goes to left_out.
-void leave_out_of_all(const std::function<std::string(const Algorithm& partitioner)>& why,
-                      RunOptions& options);
-
 // Which commands have an option.
 struct CommandSet {
   bool run, record, replay;
@@ -113,16 +108,5 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given,
 // The same for a command that solves without a scene; no option of a scene may be given.
 RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
                                const std::set<std::string>& stored = {});
-
-// Every option with its value as text: the table's, the parameters of algorithms, the scene's; what the
-// manifest holds.
-std::vector<OptionValue> option_values(const RunOptions& options);
-
-// Every algorithm that the run was asked for, in the order of its rows.
-std::vector<NamedAlgorithm> named_algorithms(const RunOptions& options);
-
-// Fingerprint of all options but those that change no row: 16 hexadecimal digits.
-std::string run_id(std::span<const OptionValue> values);
-inline std::string run_id(const RunOptions& options) { return run_id(option_values(options)); }
 
 }  // namespace cleave

@@ -7,6 +7,7 @@
 #include "harness/base/hash.h"
 #include "harness/base/names.h"
 #include "harness/experiment/friction.h"
+#include "harness/experiment/option_values.h"
 #include "harness/experiment/problem_graph.h"
 #include "solver/problem_hash.h"
 

@@ -20,21 +20,10 @@
 #include <string>
 #include <vector>
 
+#include "harness/world/contact_points.h"
 #include "scenarios/scene.h"
 
 namespace cleave {
-
-// One contact point. body_a is the lower body index and always dynamic; body_b is the other one or -1 for
-// static geometry; geom_a and geom_b are theirs. The normal points into body_a's side as ODE defines it (a
-// body at geom_a moved along the normal leaves geom_b). dCollide is always called with the geom of lower
-// index first; where that is not geom_a, its normal is turned round.
-struct ContactPoint {
-  int geom_a = -1, geom_b = -1;
-  int body_a = -1, body_b = -1;
-  std::array<double, 3> position_m{};  // world
-  std::array<double, 3> normal{};      // world, unit
-  double depth_m = 0;                  // > 0 when overlapping
-};
 
 struct BodyState {
   std::array<double, 3> position_m{};
@@ -59,11 +48,7 @@ class OdeWorld {
 
   void before_step(int step) { scene_->before_step(step, content_); }
 
-  // All contact points of the present positions, sorted by (lower body, other body or -1, lower geom, other
-  // geom, order of dCollide called with the lower geom first). At most contact_cap points a geom pair, in [1,
-  // 65535], else std::invalid_argument; cap_hits (may be null) counts the pairs that reached it. Bodies
-  // joined by a joint do not collide. Throws std::runtime_error for a contact that is not finite. Never call
-  // from two threads.
+  // All contact points of the present positions (contact_points.h).
   std::vector<ContactPoint> collide(int contact_cap, int* cap_hits);
 
   // Sets the velocities (n, 6) and moves the bodies by symplectic Euler and the exponential map of the
@@ -73,7 +58,7 @@ class OdeWorld {
   void advance(std::span<const double> velocity, double h_s);
 
   BodyState state(int body) const;
-  std::vector<double> positions_m() const;           // (n, 3) of all bodies
+  std::vector<double> positions_m() const;  // (n, 3) of all bodies
   // Number of the group that each body belongs to, by first appearance, -1 for none; empty where none is named.
   std::vector<int> body_groups() const;
   void set_state(int body, const BodyState& state);  // normalises the orientation
@@ -120,8 +105,5 @@ class OdeWorld {
   SceneContent content_;
   double gravity_m_per_s2_ = 0;
 };
-
-// Version and configuration of the library, as it reports them.
-std::string ode_version();
 
 }  // namespace cleave

@@ -1,4 +1,5 @@
 #include "tests/fuzz/options_roundtrip.h"
+#include "harness/experiment/option_values.h"
 
 #include <algorithm>
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "harness/campaign/spec.h"
+#include "harness/experiment/option_values.h"
 #include "harness/experiment/options.h"
 
 namespace cleave {

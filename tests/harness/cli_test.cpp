@@ -10,6 +10,7 @@
 #include "harness/experiment/algorithms.h"
 #include "harness/experiment/chosen_kernel.h"
 #include "harness/experiment/friction.h"
+#include "harness/experiment/option_values.h"
 #include "harness/experiment/options.h"
 #include "harness/experiment/step_record.h"
 #include "harness/world/ode_baselines.h"

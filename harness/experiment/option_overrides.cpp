@@ -1,0 +1,96 @@
+#include "harness/experiment/option_overrides.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include "harness/base/names.h"
+#include "harness/experiment/chosen_kernel.h"
+#include "harness/experiment/option_errors.h"
+#include "harness/experiment/splitter.h"
+#include "partition/registry.h"
+#include "solver/registry.h"
+
+namespace cleave {
+namespace {
+
+constexpr std::string_view kOfCost = "-cost";
+
+// What lowers the modelled time in the refiner's place: itself, or the one that is called after it.
+std::string refiner_of_cost(const std::string& name) {
+  if (name == "none" || name.ends_with(kOfCost)) return name;
+  const std::vector<std::string> names = names_of(refiners());
+  const std::string of_cost = name + std::string(kOfCost);
+  if (std::ranges::count(names, of_cost) > 0) return of_cost;
+  std::vector<std::string> allowed = {"none"};
+  for (const std::string& other : names)
+    if (other.ends_with(kOfCost)) allowed.push_back(other.substr(0, other.size() - kOfCost.size()));
+  reject("objective",
+         "cost is none of refiner '" + name + "'; allowed with it: --refiner " + joined(allowed, ","));
+}
+
+// Why the run cannot have its bodies split by it; empty: it can.
+std::string why_unable(const Algorithm& partitioner, const RunOptions& options) {
+  if (options.skip_small_islands && !partitioner.settings.has("max-bodies"))
+    return "which has no max-bodies, as --skip-small-islands needs";
+  const bool keeps_to_bound = make_partitioner(partitioner)->promised().at_most_max_bodies;
+  for (const Algorithm& solver : options.solvers)
+    if (arity_of(solver) && !keeps_to_bound)
+      return "which keeps to no max-bodies, as " + solver.text + " needs";
+  for (const Algorithm& solver : options.solvers)
+    if (solver_halves(solver.name).kernel == kChosenKernel && !partitioner.settings.has("cost-kernel"))
+      return "which chooses its parts for no kernel, as " + solver.text + " needs";
+  const bool has_groups = options.scene.name.empty() || names_groups(options.scene);
+  if (needs_groups(partitioner) && !has_groups)
+    return "which splits by groups of bodies, and scene " + options.scene.name + " names none";
+  return {};
+}
+
+}  // namespace
+
+void override_solvers(const std::map<std::string, std::string>& given, RunOptions& options) {
+  if (!given.contains("strategy") && !given.contains("kernel")) return;
+  if (given.contains("strategy")) check_name("--strategy", options.strategy, names_for("strategy"));
+  if (given.contains("kernel")) check_name("--kernel", options.kernel, names_for("kernel"));
+  std::vector<std::string> changed;
+  for (const Algorithm& solver : options.solvers) {
+    SolverHalves halves = solver_halves(solver.name);
+    if (halves.strategy.empty())
+      reject("solver",
+             "'" + solver.name + "' has neither strategy nor kernel; leave out --strategy and --kernel");
+    if (!options.strategy.empty()) halves.strategy = options.strategy;
+    if (!options.kernel.empty()) halves.kernel = options.kernel;
+    changed.push_back(halves.strategy + ":" + halves.kernel + solver.text.substr(solver.name.size()));
+  }
+  options.solvers = read_list("solver", joined(changed, ","), options.common);
+}
+
+void override_refiners(RunOptions& options) {
+  if (options.objective == Objective::rows) return;
+  std::vector<std::string> changed;
+  for (const Algorithm& refiner : options.refiners)
+    changed.push_back(refiner_of_cost(refiner.name) + refiner.text.substr(refiner.name.size()));
+  options.refiners = read_list("refiner", joined(changed, ","), options.common);
+}
+
+void leave_out_of_all(const std::function<std::string(const Algorithm& partitioner)>& why,
+                      RunOptions& options) {
+  std::erase_if(options.partitioners, [&](const Algorithm& partitioner) {
+    if (std::ranges::count(options.of_all, partitioner.text) == 0) return false;
+    const std::string reason = why(partitioner);
+    if (!reason.empty())
+      options.left_out.push_back("--partitioner all leaves out " + partitioner.text + ", " + reason);
+    return !reason.empty();
+  });
+}
+
+void leave_out_unable(const std::map<std::string, std::string>& given, RunOptions& options) {
+  const auto found = given.find("partitioner");
+  if (found == given.end()) return;
+  const std::vector<std::string> items = split_list(found->second);
+  if (std::ranges::count(items, "all") == 0) return;
+  for (const Algorithm& partitioner : options.partitioners)
+    if (std::ranges::count(items, partitioner.text) == 0) options.of_all.push_back(partitioner.text);
+  leave_out_of_all([&](const Algorithm& partitioner) { return why_unable(partitioner, options); }, options);
+}
+
+}  // namespace cleave
