@@ -283,7 +283,7 @@ class PartitionRegretTest(Measurement):
             self.assertEqual((given["--threads"], given["--cost-threads"]), ("2", "2"))
         rows = self.rows("partition_regret.csv")
         # scenes, steps and rounds; kernels, refiners and partitioners; chosen and monolithic
-        self.assertEqual(len(rows), 4 * 6 * 2 * (2 * 2 * (2 + 3 * 5 + 1) + 2))
+        self.assertEqual(len(rows), 4 * 12 * 2 * (2 * 2 * (2 + 3 * 5 + 1) + 2))
         self.assertEqual({row["round"] for row in rows}, {"1", "2"})
 
     def test_more_than_a_tenth_is_an_exit_code_and_said(self):

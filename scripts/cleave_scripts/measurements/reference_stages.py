@@ -40,7 +40,7 @@ STAGES = (
           files=(("partition_over_time.csv", "partition_over_time.csv"),)),
     Stage("partition_worth", ("partition_worth", "--out", "{out}"), 6,
           files=tuple((file, file) for file in ("partition_worth.csv", "partition_worth.png"))),
-    Stage("partition_regret", ("partition_regret", "--rounds", "4", "--out", "{out}"), 8,
+    Stage("partition_regret", ("partition_regret", "--rounds", "4", "--out", "{out}"), 18,
           files=(("partition_regret.csv", "partition_regret.csv"),)),
     Stage("two_threads", ("two_threads", "--out", "{out}"), 50, files=(("two_threads.csv", "two_threads.csv"),)),
     Stage("modelled_workers", ("modelled_workers", "--out", "{out}"), 5,
