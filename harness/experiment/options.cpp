@@ -111,10 +111,6 @@ void read_friction(RunOptions& options) {
              "pyramid follows normal forces, which --friction constant does not; allowed: limits");
 }
 
-}  // namespace
-
-RunOptions default_run_options() { return options_with({}); }
-
 // A second solve of the same step would start from the answer of the first.
 void read_session(const Given& given, RunOptions& options) {
   if (!options.session) return;
@@ -131,6 +127,10 @@ void check_reads_problem(const RunOptions& options) {
       reject("model", "auto leaves rows out of the step problem, which --solver " + std::string(ode.name) +
                           " does not read; allowed: full");
 }
+
+}  // namespace
+
+RunOptions default_run_options() { return options_with({}); }
 
 RunOptions parse_run_options(const std::map<std::string, std::string>& given,
                              const std::set<std::string>& stored) {

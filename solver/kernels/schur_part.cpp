@@ -18,11 +18,15 @@ void zeros(std::vector<double>& array, std::size_t size) {
 
 }  // namespace
 
-void SchurPart::analyze(const PreparedStep& step, const InterfaceSplit& split, int index,
-                        std::uint64_t limit_bytes) {
+void SchurPart::bind(const PreparedStep& step, const InterfaceSplit& split, int index) {
   step_ = &step;
   split_ = &split;
   index_ = index;
+}
+
+void SchurPart::analyze(const PreparedStep& step, const InterfaceSplit& split, int index,
+                        std::uint64_t limit_bytes) {
+  bind(step, split, index);
   analyzed_ = matrix_.analyze(step, part_rows().bodies, split.local_of_body, part_rows().groups, {}, 1,
                               BlockMatrix::most_blocks(limit_bytes));
   if (analyzed_) order_cut_rows();
@@ -30,11 +34,9 @@ void SchurPart::analyze(const PreparedStep& step, const InterfaceSplit& split, i
 
 void SchurPart::rebind(const PreparedStep& step, const InterfaceSplit& split, int index,
                        std::uint64_t limit_bytes) {
-  if (!matrix_.rebind(step, split.local_of_body, split.parts[index].groups))
+  bind(step, split, index);
+  if (!matrix_.rebind(step, split.local_of_body, part_rows().groups))
     return analyze(step, split, index, limit_bytes);
-  step_ = &step;
-  split_ = &split;
-  index_ = index;
   order_cut_rows();
 }
 

@@ -54,6 +54,7 @@ class SchurPart {
  private:
   const PartRows& part_rows() const { return split_->parts[index_]; }
   int row_of(int entry) const { return split_->cut_rows[part_rows().cut_rows[entry]]; }
+  void bind(const PreparedStep& step, const InterfaceSplit& split, int index);
   int position_of(int entry) const;
   int supernode_of(int entry) const;
   void order_cut_rows();
