@@ -49,10 +49,12 @@ def campaign(sizes=(10, 25), orders=("scene", "random@seed=1")):
 
 class HiddenChoicesTest(unittest.TestCase):
 
-    def setUp(self):
-        self.rows = hidden_choices.rows_of(experiments(campaign()))
-        self.table = hidden_choices.means(self.rows)
-        self.found = Settings(self.table)
+    @classmethod
+    def setUpClass(cls):
+        cls.rows = hidden_choices.rows_of(experiments(campaign()))
+        cls.table = hidden_choices.means(cls.rows)
+        cls.found = Settings(cls.table)
+        cls.claims = hidden_claims.claim_rows(cls.found, cls.rows, PAPER)
 
     def test_every_setting_of_which_all_scenes_have_cells(self):
         self.assertEqual(len(self.found.all), 2 * 2 * 2 * 3 * 3)
@@ -82,7 +84,7 @@ class HiddenChoicesTest(unittest.TestCase):
         self.assertEqual(set(hidden_choices.fits(Settings(flat), PAPER)["mean"]), {0.0})
 
     def test_claims_hold_where_the_papers_numbers_stand(self):
-        claims = hidden_claims.claim_rows(self.found, self.rows, PAPER)
+        claims = self.claims
         mine = claims[(claims["claim"] == "FM and KL reduce t_s on Log Tower by about 31 % and 12 %") & (claims["row"] == "mindp + fm, said 31 %")]
         self.assertEqual(set(mine["fails"]), {0})
         self.assertEqual(mine[mine["by"] == CUT]["holds"].sum(), 72)
@@ -92,7 +94,7 @@ class HiddenChoicesTest(unittest.TestCase):
         self.assertEqual((consistent["holds"].sum(), consistent["fails"].sum()), (4 * 2 * 3, 72 - 4 * 2 * 3))
 
     def test_the_worst_part_is_judged_by_its_own_column(self):
-        claims = hidden_claims.claim_rows(self.found, self.rows, PAPER)
+        claims = self.claims
         mine = claims[claims["claim"] == "mr avoids badly conditioned subsystems"].groupby("row")[["holds", "fails"]].sum()
         self.assertEqual(mine.loc["Large Rock Pile: part_mass_ratio_max, largest over the steps"].tolist(), [72, 0])
         self.assertEqual(mine.loc["Large Rock Pile: part_condition_max, largest over the steps"].tolist(), [0, 72])
