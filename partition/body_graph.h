@@ -31,8 +31,8 @@ class BodyGraph {
 
   // Merges links of the same pair into one edge; links with static geometry or of a body with itself are no
   // edge. mass_kg: (n). Throws std::invalid_argument naming the link when a body index is outside [-1, n) or
-  // rows < 1, naming the body when a mass is not finite and positive, and when all rows together exceed the
-  // range of int (so that no weight, degree, cut or gain can overflow). step: of the run that the graph was
+  // rows < 1, naming the body when a mass is not finite and positive, and when all rows together exceed a quarter of the
+  // range of int (so that no weight, degree, cut or sum of two gains can overflow). step: of the run that the graph was
   // taken from, where there is one. position_m: (n, 3) centres of the bodies, or empty where nobody knows them;
   // throws naming the number that is not finite, and for another size.
   BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links,

@@ -1,7 +1,5 @@
 #include "partition/cost_features.h"
 
-#include <algorithm>
-#include <iterator>
 #include <numeric>
 
 namespace cleave {

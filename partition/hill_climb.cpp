@@ -1,7 +1,5 @@
 #include "partition/hill_climb.h"
 
-#include <algorithm>
-
 namespace cleave {
 
 long HillClimb::run() {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 #include <numbers>
-#include <tuple>
 #include <utility>
 
 namespace cleave {

@@ -14,7 +14,6 @@
 // sides changed; a heap holds the best swap of every pair.
 #include <algorithm>
 #include <array>
-#include <cstdint>
 #include <memory>
 #include <utility>
 

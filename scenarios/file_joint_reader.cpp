@@ -43,10 +43,10 @@ std::vector<int> Groups::bodies_of(const Value& reference) const {
   if (bracket == text.npos) return group->second;
   const char* const first = text.data() + bracket + 1;
   const char* const last = text.data() + text.size() - 1;  // of the closing bracket
+  if (first > last) reference.reject_value(kReference);
   std::size_t index = 0;
   const auto [end, error] = std::from_chars(first, last, index);
-  if (first > last || error == std::errc::invalid_argument || end != last || *last != ']')
-    reference.reject_value(kReference);
+  if (error == std::errc::invalid_argument || end != last || *last != ']') reference.reject_value(kReference);
   if (error != std::errc{} || index >= group->second.size())
     reference.reject_value("one of '" + name + "[0]' to '" + name + "[" +
                            std::to_string(group->second.size() - 1) + "]'");

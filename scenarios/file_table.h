@@ -2,7 +2,6 @@
 // key, value and what is allowed.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <set>
 #include <string>

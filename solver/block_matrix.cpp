@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <numeric>
-#include <tuple>
 #include <utility>
 
 #include "solver/counting_sort.h"

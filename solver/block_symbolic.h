@@ -85,7 +85,6 @@ class BlockSymbolic {
   // For each entry of rows() at a position above its branch: its index among the rows below the branch's root; -1 for
   // others.
   std::span<const int> carry_index() const { return carry_index_; }
-  int stage_count() const { return static_cast<int>(stage_flops_.size()); }
 
   // Blocks of the factor, padding aside, diagonal blocks whole; of as many columns as were analysed.
   long block_count() const { return columns_.block_count(); }

@@ -48,6 +48,7 @@ bool CarriedFactor::rebind(const PreparedStep& step, const Parts& parts, Paralle
 }
 
 bool CarriedFactor::factor_anew(ParallelTasks& tasks) {
+  has_factor_ = is_own_ = is_of_step_ = false;  // also where the next lines find no memory
   if (!fits_ && !kernel_->rebind(*step_, parts_, tasks)) kernel_->analyze(*step_, parts_, tasks);
   fits_ = true;
   ++counts_.factorizations;

@@ -66,7 +66,7 @@ class CarriedFactor : public Kernel {
   const PreparedStep* step_ = nullptr;
   Parts parts_;
   BodySystem system_;
-  std::vector<double> d_, factored_d_;  // (m) weights asked for, and those of the factor
+  std::vector<double> factored_d_;  // (m) weights of the factor
   std::vector<WeightBlock> blocks_;
   bool has_factor_ = false, fits_ = false;  // fits_: the analysis is of these rows
   bool is_own_ = false;                     // the factor is that of the weights at hand

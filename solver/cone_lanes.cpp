@@ -1,7 +1,5 @@
 #include "solver/cone_lanes.h"
 
-#include <utility>
-
 #include "solver/linear/four_lanes.h"
 
 namespace cleave {

@@ -126,8 +126,8 @@ inline LaneVector jordan_divide(const LaneVector& c, const LaneDivisor& by) {
   return {normal, (c.u - normal * by.l.u) * inverse, (c.v - normal * by.l.v) * inverse};
 }
 
-// The inverse of the step along y at which l + step y leaves Q; 0 or less where it never does. It is the least eigenvalue of
-// y in the coordinates where l is e.
+// The inverse of the step along y at which l + step y leaves Q; 0 or less where it never does. It is minus the least
+// eigenvalue of y in the coordinates where l is e.
 [[gnu::always_inline]] inline Lanes inverse_step(const LaneDivisor& by, const LaneVector& y) {
   const Lanes along = hyperbolic_product(by.unit, y);
   const Lanes share = (along + y.n) / (by.unit.n + 1);

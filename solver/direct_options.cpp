@@ -53,15 +53,16 @@ const Parameter& sweeps() {
 }
 
 const Parameter& until() {
-  static const Parameter parameter{.name = "until",
-                                   .kind = Kind::number,
-                                   .default_value = "0",
-                                   .range = {0, kInfinity},
-                                   .unit = "m/s",
-                                   .help =
-                                       "residual, over max(1, largest |v0|), at which an iterative baseline "
-                                       "ends before its last sweep; 0: never",
-                                   .source = "solver/baselines/iterative_baseline.h"};
+  static const Parameter parameter{
+      .name = "until",
+      .kind = Kind::number,
+      .default_value = "0",
+      .range = {0, kInfinity},
+      .unit = "m/s",
+      .help =
+          "residual, over max(1, largest |v0|), at which an iterative baseline "
+          "ends before its last sweep; 0: never, but for apgd at the solvers' target",
+      .source = "solver/baselines/iterative_baseline.h"};
   return parameter;
 }
 

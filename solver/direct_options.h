@@ -1,5 +1,5 @@
-// What the direct solvers (strategy:kernel) are told: the options of every solver and the parameters that
-// strategies and kernels declare in the registry.
+// What solvers are told: the options of every direct one (strategy:kernel), and the parameters that strategies, kernels and
+// baselines declare in the registry.
 #pragma once
 
 #include "harness/base/parameter.h"

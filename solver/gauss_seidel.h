@@ -1,4 +1,4 @@
-// Projected Gauss-Seidel: the predictor of the active-set strategies, the baselines `pgs`, `pgs-colored`, `pgs-parts` and
+// Projected Gauss-Seidel: the predictor of the strategy `newton`, the baselines `pgs`, `pgs-colored`, `pgs-parts` and
 // the prediction of friction bounds. One sweep visits every row once, in natural order unless a baseline has another:
 //
 //     w_r = J_r v + C_r lambda_r - b_r,   lambda_r <- next(r, lambda_r, w_r),   v += M^-1 J_r^T dlambda

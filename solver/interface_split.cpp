@@ -20,7 +20,6 @@ void InterfaceSplit::split(const PreparedStep& step, std::span<const int> part_o
     local_of_body[body] = static_cast<int>(bodies.size());
     bodies.push_back(static_cast<int>(body));
   }
-  cut_groups.clear();
   cut_rows.clear();
   for (std::size_t g = 0; g < step.groups().size(); ++g) {
     const RowGroup& group = step.groups()[g];
@@ -30,7 +29,6 @@ void InterfaceSplit::split(const PreparedStep& step, std::span<const int> part_o
       parts[part_a].groups.push_back(static_cast<int>(g));
       continue;
     }
-    cut_groups.push_back(static_cast<int>(g));
     for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
       for (int side = 0; side < 2; ++side) {
         PartRows& part = parts[side == 0 ? part_a : part_b];

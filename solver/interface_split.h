@@ -23,7 +23,6 @@ struct InterfaceSplit {
   int part_count = 0;
   std::vector<PartRows> parts;     // (at least part_count)
   std::vector<int> local_of_body;  // (n) place of a body in its part
-  std::vector<int> cut_groups;     // groups between two parts
   std::vector<int> cut_rows;       // their rows, ascending
 };
 

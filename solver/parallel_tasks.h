@@ -30,7 +30,7 @@ class ParallelTasks {
                 std::uint64_t memory_limit_bytes = kNoMemoryLimit)
       : clock_(clock), team_(WorkerTeam::shared(threads)), stop_(stop), memory_(memory_limit_bytes) {}
 
-  // Tasks are started in ascending order; one may wait for an earlier one.
+  // In any order: no task may wait for another.
   template <class Task>
   void run(Stage stage, int count, const Task& task) {
     StageTimer timer(clock_, stage);

@@ -38,15 +38,15 @@ std::string PartsCheck::find_error(const Parts& parts, int bodies) {
   const int entries = static_cast<int>(parts.part_of_body.size());
   if (entries != bodies)
     return "part_of_body has " + std::to_string(entries) + " entries, needs one per body";
-  if (parts.parent_of_part.empty()) return {};
-  std::string error = find_tree_error(parts.parent_of_part);
+  const bool is_tree = !parts.parent_of_part.empty();
+  std::string error = is_tree ? find_tree_error(parts.parent_of_part) : "";
   if (!error.empty()) return error;
-  int leaves = 0;
-  while (leaves < static_cast<int>(has_child_.size()) && !has_child_[leaves]) ++leaves;
+  int leaves = is_tree ? 0 : bodies;
+  while (is_tree && leaves < static_cast<int>(has_child_.size()) && !has_child_[leaves]) ++leaves;
   for (int body = 0; body < bodies; ++body) {
     const int part = parts.part_of_body[body];
     if (part < 0 || part >= leaves)
-      return entry_text("part_of_body", body, part, range_text(0, leaves - 1) + ", a leaf");
+      return entry_text("part_of_body", body, part, range_text(0, leaves - 1) + (is_tree ? ", a leaf" : ""));
   }
   return {};
 }

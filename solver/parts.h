@@ -35,8 +35,7 @@ struct Parts {
 // Keeps its scratch, so that parts as large as those before allocate nothing.
 class PartsCheck {
  public:
-  // Empty, or in one line what is wrong with parts of so many bodies: entry, value and what is allowed. Ids of
-  // a single level are not looked at, only how many there are.
+  // Empty, or in one line what is wrong with parts of so many bodies: entry, value and what is allowed.
   std::string find_error(const Parts& parts, int bodies);
 
  private:

@@ -49,7 +49,6 @@ class PreparedStep {
   }
   // How often prepare() was called: numbers of J and M stay while this does.
   long preparations() const { return preparations_; }
-  std::span<const double> inverse_mass() const { return inverse_mass_; }  // (n, 6, 6)
   // (m, 12) rows of M^-1 J^T, laid out as the Jacobian.
   std::span<const double> mass_jacobian() const { return mass_jacobian_; }
   const ImpulseSet& set() const { return set_; }

@@ -5,7 +5,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "harness/base/algorithm.h"
@@ -16,8 +15,8 @@ namespace cleave {
 class Kernel;    // solver/kernels/kernel.h
 class Strategy;  // solver/strategies/strategy.h
 
-// always_exact: ends within the judge's limit on every problem that it takes. Others say not_converged,
-// honestly.
+// always_exact: ends within the judge's limit on every problem of boxes or cones that it takes; Coulomb's law may be beyond it.
+// Others say not_converged, honestly.
 struct StrategyRow : AlgorithmEntry {
   bool always_exact;
   const char* only_kernel;                                      // the one kernel it runs on; nullptr: any
@@ -26,7 +25,6 @@ struct StrategyRow : AlgorithmEntry {
 
 struct KernelRow : AlgorithmEntry {
   bool splits;           // uses the partition
-  bool nests;            // and wants it as a tree, split by the parameter arity
   const char* resolved;  // what runs under this name
   std::unique_ptr<Kernel> (*make)(const Settings& settings);
 };

@@ -1,4 +1,4 @@
-// Projected Gauss-Seidel sweeps for several threads: the predictor of the active-set strategies. One row is
+// Projected Gauss-Seidel sweeps for several threads: the predictor of the strategy `pivot`. One row is
 //
 //     w_r = J_r v + C_r lambda_r - b_r,   lambda_r <- clamp(lambda_r - omega w_r / d_r, lo_r, hi_r),   v += M^-1 J_r^T dlambda
 //

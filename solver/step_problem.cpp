@@ -158,7 +158,7 @@ int count_tangents(const StepProblem& p, std::size_t r) {
 // it is.
 std::string find_turned_box_error(const StepProblem& p, std::size_t r) {
   if (p.box_angle_rad.empty() || p.box_angle_rad[r] == 0) return {};
-  if (count_tangents(p, r) < 2) {
+  if (count_tangents(p, r) != 2) {
     return error_at("box_angle_rad", r, p.box_angle_rad[r],
                     "0 but on a normal row that its two friction rows, of the same bodies, follow");
   }
@@ -174,13 +174,17 @@ bool is_curved(const StepProblem& p, std::size_t r) {
   return !p.contact_set.empty() && p.contact_set[r] != ContactSet::box;
 }
 
-// Of a friction row: those of a contact without a box stand right behind their normal row, and nowhere else.
+// Of a friction row: those of a contact without a box, or with a turned one, stand right behind their normal row, and nowhere
+// else.
 std::string find_stray_error(const StepProblem& p, std::size_t r) {
+  if (p.row_kind[r] != RowKind::friction) return {};
   const int normal = p.friction_row[r];
-  if (!is_curved(p, normal) || static_cast<int>(r) <= normal + count_tangents(p, normal)) return {};
-  return error_at(
-      "friction_row", r, normal,
-      "another row, as contact_set there is no box, and the friction rows of such a contact follow it");
+  const bool is_turned = !p.box_angle_rad.empty() && p.box_angle_rad[normal] != 0;
+  if (!(is_curved(p, normal) || is_turned) || static_cast<int>(r) <= normal + count_tangents(p, normal))
+    return {};
+  const std::string set = is_turned ? "box_angle_rad there is not 0" : "contact_set there is no box";
+  return error_at("friction_row", r, normal,
+                  "another row, as " + set + ", and the friction rows of such a contact follow it");
 }
 
 // The coefficient of a cone is one number, and its rows have no bounds of their own.
@@ -204,8 +208,6 @@ std::string find_contact_set_error(const StepProblem& p, std::size_t r) {
   const int set = static_cast<int>(p.contact_set[r]);
   if (set > static_cast<int>(ContactSet::coulomb))
     return error_at("contact_set", r, set, "0 (box), 1 (cone), 2 (coulomb)");
-  if (p.row_kind[r] == RowKind::friction)
-    if (std::string error = find_stray_error(p, r); !error.empty()) return error;
   if (!is_curved(p, r)) return {};
   const int tangents = p.row_kind[r] == RowKind::normal ? count_tangents(p, r) : 0;
   if (tangents != 1 && tangents != 2)
@@ -222,7 +224,7 @@ std::string find_contact_set_error(const StepProblem& p, std::size_t r) {
 std::string find_row_error(const StepProblem& p) {
   for (std::size_t r = 0; r < p.rhs.size(); ++r) {
     for (const auto find : {find_body_error, find_bound_error, find_kind_error, find_turned_box_error,
-                            find_contact_set_error, find_pair_error}) {
+                            find_stray_error, find_contact_set_error, find_pair_error}) {
       if (std::string error = find(p, r); !error.empty()) return error;
     }
   }

@@ -1,7 +1,6 @@
 #include "solver/step_solver.h"
 
 #include <algorithm>
-#include <cassert>
 
 #include "solver/impulse_set.h"
 
@@ -26,8 +25,7 @@ std::optional<SolveStatus> find_status(std::string_view name) {
 std::vector<std::string> status_names() { return {kStatusNames.begin(), kStatusNames.end()}; }
 
 bool has_result(SolveStatus status) {
-  return status == SolveStatus::ok || status == SolveStatus::not_converged ||
-         status == SolveStatus::diverged;
+  return status == SolveStatus::ok || status == SolveStatus::not_converged || status == SolveStatus::diverged;
 }
 
 std::string StepSolver::refuse_set(const StepProblem& problem) {
@@ -41,7 +39,8 @@ SolveSummary StepSolver::solve(const StepProblem& problem, const Parts& parts, S
   summary.message = find_problem_error(problem);
   if (summary.message.empty() && uses_partition())
     summary.message = parts_check_.find_error(parts, problem.body_count());
-  if (summary.message.empty() && hardest_set(problem) > SetKind::intervals) summary.message = refuse_set(problem);
+  if (summary.message.empty() && hardest_set(problem) > SetKind::intervals)
+    summary.message = refuse_set(problem);
   if (!summary.message.empty()) {
     summary.status = SolveStatus::refused;
     return summary;

@@ -19,6 +19,8 @@ void open_standard_streams() {
   if (file >= 0) ::close(file);
   ::signal(SIGPIPE, SIG_IGN);
   ::signal(SIGXFSZ, SIG_IGN);
+  // A child of a program that inherited this signal as ignored would end without a trace to wait for.
+  ::signal(SIGCHLD, SIG_DFL);
 }
 
 OutputState finish_standard_output() {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <list>
 #include <stdexcept>
@@ -55,7 +54,7 @@ class Sweep {
         share_(share_directory(options.out, options.shard, options.shards)),
         times_(campaign.times()),
         progress_("campaign") {
-    for (const IndexRow& row : campaign.rows()) row.is_pending() ? ++pending_ : ++summary_.kept;
+    for (const IndexRow& row : campaign.rows()) summary_.kept += !row.is_pending();
     done_ = summary_.kept;
     if (options.merge) next_ = campaign.cells().size();
     for (int slot = options.jobs - 1; slot >= 0; --slot) free_slots_.push_back(slot);
@@ -234,7 +233,6 @@ class Sweep {
     campaign_.rows()[place] = row;
     times_.add(campaign_.cells()[place], seconds_of(row));
     ++done_;
-    --pending_;
     failed_ += row.status != to_string(SolveStatus::ok);
   }
 
@@ -276,7 +274,7 @@ class Sweep {
   std::list<RunningCell> running_;
   std::vector<int> free_slots_;
   std::size_t next_ = 0;
-  int pending_ = 0, done_ = 0, failed_ = 0;
+  int done_ = 0, failed_ = 0;
   Clock::time_point saved_at_ = Clock::now();
   double save_s_ = 0;
 };

@@ -3,7 +3,6 @@
 
 #include <CLI/App.hpp>
 #include <functional>
-#include <map>
 #include <span>
 #include <string>
 #include <vector>

@@ -103,7 +103,7 @@ Campaign read_campaign(const std::string& directory, const std::vector<int>& by,
 // What became of one group.
 struct Comparison {
   std::vector<double> a, b;  // of the steps that both measured
-  int lost = 0;              // steps that A solved and B did not
+  int lost = 0;              // steps that A solved and B did not, of those that B has rows of
   int other_solutions = 0;   // of those that both solved
 };
 

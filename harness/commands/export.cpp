@@ -140,7 +140,7 @@ void check_partition(const ExportOptions& options, const ExportFormat& format) {
     throw std::invalid_argument("--partition: '' is no label; name one that the file stores");
   if (options.partition && !format.has_partition)
     throw std::invalid_argument("--partition: --format " + std::string(format.name) +
-                                " writes all that there are; leave it out");
+                                " takes none; leave it out");
 }
 
 void check_friction(const ExportOptions& options, const ExportFormat& format) {

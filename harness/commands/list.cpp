@@ -20,7 +20,8 @@ struct Line {
 Line parameter_line(const Parameter& parameter) {
   const std::string value =
       parameter.default_value.empty() ? "must be given" : parameter.default_value + " by default";
-  return {"@" + parameter.name, parameter.help + "; " + allowed_text(parameter) + ", " + value,
+  const std::string unit = parameter.unit.empty() ? "" : " " + parameter.unit;
+  return {"@" + parameter.name, parameter.help + "; " + allowed_text(parameter) + unit + ", " + value,
           parameter.source, true};
 }
 
@@ -76,7 +77,9 @@ void print_table(const char* title, const std::vector<Line>& lines) {
   std::printf("%s\n", title);
   for (const Line& line : lines) {
     if (line.is_parameter) {
-      std::printf("  %-*s    %s: %s\n", name_width, "", line.name.c_str(), line.help.c_str());
+      const std::string reference = line.reference.empty() ? "" : "  [" + line.reference + "]";
+      std::printf("  %-*s    %s: %s%s\n", name_width, "", line.name.c_str(), line.help.c_str(),
+                  reference.c_str());
       continue;
     }
     std::printf("  %-*s  ", name_width, line.name.c_str());

@@ -1,6 +1,4 @@
 // cleave record: simulates and writes the problem of chosen steps, one file each.
-#include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <memory>
 #include <stdexcept>

@@ -45,7 +45,7 @@ int simulate(const std::string& command, const std::vector<std::string>& argv, c
     ProgressLine line(options.scene.text);
     RunSummary summary = simulation.run(write, [&line](int done, int total) { line.update(done, total); });
     if (motion) motion->finish();
-    if (watch) tell_findings(options.out, watch->findings());
+    if (watch && !summary.interrupted) tell_findings(options.out, watch->findings());
     return summary;
   });
 }

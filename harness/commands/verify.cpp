@@ -1,6 +1,5 @@
 // cleave verify: checks what is stored from the files alone; with --rerun some of the runs are repeated too.
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <limits>

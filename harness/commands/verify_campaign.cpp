@@ -26,7 +26,7 @@ using Rows = std::map<std::string, std::vector<IndexRow>>;  // by cell
 std::pair<int, int> share_of(const fs::path& out, const fs::path& share) {
   int shard = 1, shards = 1;
   if (share != out) std::sscanf(share.filename().c_str(), "%dof%d", &shard, &shards);
-  return {shard, std::max(1, shards)};
+  return {std::max(1, shard), std::max(1, shards)};
 }
 
 // The index has the cells of its spec, numbered as that has them.

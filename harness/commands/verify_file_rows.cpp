@@ -76,9 +76,13 @@ class RowCheck {
          table_.cell(row_, column), number_text(found));
   }
 
-  // Whether the solver had no analysis of an earlier step to keep.
+  // Whether the model left nothing out of the last solve.
+  bool solved_all_rows() const { return cleave::solved_all_rows(table_, row_); }
+
+  // Whether the solver analysed this problem: not an earlier step's, and not what the model left of it.
   bool analysed_alone() const {
-    return table_.cell(row_, "reuse_analysis") != "1" && table_.cell(row_, "session") != "1";
+    return solved_all_rows() && table_.cell(row_, "reuse_analysis") != "1" &&
+           table_.cell(row_, "session") != "1";
   }
 
   void same_text(const char* column, const std::string& found) {
@@ -198,7 +202,7 @@ void check_solved_row(const ProblemFile& file, const std::string& label, const s
     const std::string choice = read_choice(partition->second);
     check.same_text("auto_choice", choice.empty() ? "-" : choice);
     // A solver that says schur-rows and works on something else is found out by its interface.
-    if (solution.kernel == "schur-rows")
+    if (solution.kernel == "schur-rows" && check.solved_all_rows())
       check.same_text("interface_unknowns", std::to_string(found.interface_rows));
     if (solution.kernel == "schur-bodies" && check.analysed_alone())
       check.same_text("interface_unknowns", std::to_string(cover_unknowns(file.problem, parts)));

@@ -119,8 +119,7 @@ class RowAlone {
 
   // Rows that were left out of the last solve are in the partition and not in its interface.
   void check_interface() {
-    const bool is_full =
-        number("model_rows_left_out") + number("model_rows_at_rest") == number("model_rows_returned");
+    const bool is_full = solved_all_rows(table_, row_);
     const double unknowns = number("interface_unknowns");
     if (text("kernel") == "schur-rows") {
       const double most = number("interface_rows");
@@ -194,6 +193,11 @@ class RowAlone {
 bool residual_is_exact(const StepsTable& table, std::size_t row) {
   return table.number(row, "residual_m_per_s") <=
          kExactLimit * std::max(1.0, table.number(row, "largest_free_velocity_m_per_s"));
+}
+
+bool solved_all_rows(const StepsTable& table, std::size_t row) {
+  return table.number(row, "model_rows_left_out") + table.number(row, "model_rows_at_rest") ==
+         table.number(row, "model_rows_returned");
 }
 
 bool has_result(const std::string& status) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <string_view>
-#include <utility>
 
 #include "harness/base/names.h"
 #include "partition/cost_features.h"

@@ -11,6 +11,7 @@
 #include "harness/experiment/friction_box.h"
 #include "harness/experiment/friction_cone.h"
 #include "harness/experiment/model_changes.h"
+#include "harness/experiment/step_columns.h"
 #include "solver/registry.h"
 
 namespace cleave {
@@ -72,12 +73,6 @@ TimedSolve solve_timed(const StepProblem& problem) {
   std::ranges::nth_element(times, times.begin() + kTimedSolves / 2);
   result.t_s_ms = times[kTimedSolves / 2];
   return result;
-}
-
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  double largest = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, std::abs(a[k] - b[k]));
-  return largest;
 }
 
 ModelFinding named(const char* name, const char* advice, long found = 0, long of = 0) {
@@ -156,7 +151,7 @@ void ModelWatch::keep_sample(const StepProblem& problem) {
   std::erase_if(samples_, [this](const Sample& sample) { return sample.number % stride_ != 0; });
 }
 
-// change: of a step problem into what it would be; the same number of rows and bounds means nothing to try.
+// change: of a step problem into what it would be.
 template <class Change>
 ModelFinding ModelWatch::try_out(ModelFinding finding, Change change) const {
   finding.steps = steps_;
@@ -171,8 +166,9 @@ ModelFinding ModelWatch::try_out(ModelFinding finding, Change change) const {
     gone += sample.problem.row_count() - changed.row_count();
     finding.t_s_ms += before.t_s_ms;
     finding.saved_ms += before.t_s_ms - after.t_s_ms;
-    finding.change_m_per_s =
-        std::max(finding.change_m_per_s, largest_difference(before.velocity, after.velocity));
+    const double change_m_per_s = largest_difference(before.velocity, after.velocity);
+    if (!(change_m_per_s <= finding.change_m_per_s)) finding.change_m_per_s = change_m_per_s;
+    if (std::isnan(change_m_per_s)) break;  // nothing else can be said of it
   }
   if (finding.samples == 0) return finding;
   finding.rows_share = rows == 0 ? 0 : static_cast<double>(gone) / static_cast<double>(rows);

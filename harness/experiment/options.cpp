@@ -1,7 +1,6 @@
 #include "harness/experiment/options.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <set>
 

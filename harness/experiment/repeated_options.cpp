@@ -68,6 +68,7 @@ void drop_replaced(const Given& given, Given& stored) {
     drop(stored, {"erp", "cfm"});
   if (given.contains("solver")) drop(stored, {"strategy", "kernel"});
   if (given.contains("refiner")) drop(stored, {"objective"});
+  if (given.contains("session")) drop(stored, {"repeats"});
   if (value_of(given.contains("mode") ? given : stored, "mode") == "separate")
     drop(stored, {"advance", "record-motion", "explain-model"});
 }

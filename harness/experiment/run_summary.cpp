@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <optional>
+
+#include "solver/step_solver.h"
 
 namespace cleave {
 namespace {
@@ -13,14 +16,15 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
+// NaN stays, whatever comes after it.
 void take_worse(double& worst, double value) {
-  if (!(value <= worst)) worst = value;
+  if (!std::isnan(worst) && !(value <= worst)) worst = value;
 }
 
 // Rows without a judge's number say nothing of residuals.
 bool judged(const StepRecord& row) {
-  return row.status != "skipped" && row.status != "refused" && row.status != "crashed" &&
-         row.status != "out_of_memory";
+  const std::optional<SolveStatus> status = find_status(row.status);
+  return status && has_result(*status);
 }
 
 // Why the row is not ok.

@@ -158,8 +158,8 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
     visitor(name, member, help, ColumnOf::machine, about);
   };
   visit("run_id", r.run_id,
-        "fingerprint of all options but threads, out, force, record-motion and explain-model: equal "
-        "experiments have equal ids",
+        "fingerprint of all options but threads, memory-limit, out, force, record-motion and explain-model: "
+        "equal experiments have equal ids",
         About::bookkeeping);
   visit("scene", r.scene, "name of the scene", About::bookkeeping);
   visit("seed", r.seed, "seed of the scene's random choices", About::bookkeeping);

@@ -1,7 +1,6 @@
 #include "harness/files/manifest.h"
 
 #include <sstream>
-#include <stdexcept>
 
 #include "harness/files/checksums.h"
 #include "harness/files/json_writer.h"

@@ -1,7 +1,6 @@
 #include "harness/files/polygon_mesh.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>

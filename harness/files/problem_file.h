@@ -39,7 +39,7 @@ struct StoredParameter {
 
 struct StoredPartition {
   std::string partitioner, refiner;         // as named in the run
-  std::vector<StoredParameter> parameters;  // what shaped it; see problem_file.h's list of attributes
+  std::vector<StoredParameter> parameters;  // what shaped it; see PROBLEM_FILES.md
   std::vector<int> part_of_body;            // (n)
   std::vector<int> parent_of_part;          // the tree (solver/parts.h); empty: one level
 };

@@ -1,4 +1,4 @@
-// What a problem file holds, once: reader and writer both walk these lists. See problem_file.h.
+// What a problem file holds, once: reader and writer both walk these lists. See PROBLEM_FILES.md.
 //
 // A visitor is called with a name, a member and, for arrays, the shape, and whether a file must have it.
 #pragma once

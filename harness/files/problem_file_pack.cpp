@@ -1,9 +1,5 @@
 #include "harness/files/problem_file_pack.h"
 
-#include <map>
-#include <optional>
-#include <stdexcept>
-
 #include "harness/files/packed_bytes.h"
 #include "harness/files/problem_file_fields.h"
 

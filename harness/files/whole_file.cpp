@@ -87,7 +87,14 @@ void write_whole_files(std::span<const NamedBytes> files) {
     while (aside > 0) ::unlink(part_name_of(files[--aside].path).c_str());
     throw;
   }
-  for (const NamedBytes& named : files) publish_part_file(named.path);
+  for (std::size_t next = 0; next < files.size(); ++next) {
+    try {
+      publish_part_file(files[next].path);
+    } catch (...) {
+      for (; next < files.size(); ++next) ::unlink(part_name_of(files[next].path).c_str());
+      throw;
+    }
+  }
 }
 
 GrowingFile::GrowingFile(const fs::path& path)

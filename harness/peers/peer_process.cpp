@@ -5,6 +5,7 @@
 #include <omp.h>
 #include <poll.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -56,8 +57,10 @@ bool unpack(const std::string& bytes, PeerAnswer& answer) {
 }
 
 // A child has the calling thread alone: libraries must not look for others. Its crash is expected and leaves no core.
-void enter_child() {
-  ::signal(SIGINT, SIG_IGN);  // the parent says when
+void enter_child(pid_t parent) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);  // it had died before
+  ::signal(SIGINT, SIG_IGN);              // the parent says when
   ::signal(SIGPIPE, SIG_DFL);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) ::signal(signal, SIG_DFL);
   const rlimit no_core{0, 0};
@@ -91,10 +94,11 @@ class Child {
   explicit Child(const std::function<PeerAnswer()>& work) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) throw std::bad_alloc();
+    const pid_t self = ::getpid();
     pid_ = ::fork();
     if (pid_ == 0) {
       ::close(ends[0]);
-      enter_child();
+      enter_child(self);
       serve(ends[1], work);
     }
     ::close(ends[1]);

@@ -90,7 +90,7 @@ double joint_drift_m(const OdeWorld& world) {
   const int joints = static_cast<int>(world.content().joints.size());
   for (int j = 0; j < joints; ++j) {
     const double gap = ode_joint_gap_m(world.content().joints[j], j);
-    if (!(gap <= widest)) widest = gap;
+    if (!std::isnan(widest) && !(gap <= widest)) widest = gap;
   }
   return widest;
 }

@@ -67,7 +67,6 @@ class OdeWorld {
   double last_body_z_m() const;       // NaN without bodies
   double potential_energy_j() const;  // sum of m g z
   double kinetic_energy_j() const;    // sum of 1/2 m v.v + 1/2 omega.I omega
-  double gravity_m_per_s2() const { return gravity_m_per_s2_; }
 
   // Number of messages ODE gave since the last call ("LCP internal error, s <= 0" and the like); the first
   // one's text goes to first_text, if asked for and if there was one.

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <span>
-#include <vector>
 
 #include "solver/gauss_seidel.h"
 #include "solver/group_coloring.h"

@@ -79,7 +79,7 @@ void SchurRowsKernel::count_interface(MemoryCount& memory) const {
   memory.add<double>(cut_rows);  // lambda
   memory.add<int>(cut_rows);     // its row of S
   memory.add<InterfaceRow>(cut_rows);
-  memory.add_grown(split_.local_of_body, split_.cut_groups, split_.cut_rows);
+  memory.add_grown(split_.local_of_body, split_.cut_rows);
   if (step_->set().has_blocks()) memory.add<double>(12, step_->row_count());
   for (int i = 0; i < split_.part_count; ++i) {
     const PartRows& rows = split_.parts[i];

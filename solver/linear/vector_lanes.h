@@ -1,6 +1,6 @@
 // Vectors of 2, 4 or 8 doubles: what the tiles of dense algebra are made of. To be included only by files whose
 // instruction set is known: one each (dense_tiles_avx2.cpp, dense_tiles_avx512.cpp) or that of the whole program, which has the
-// first four lanes (dense_block.cpp, block_cholesky.cpp, block_matrix.cpp). Everything here is local to the file that includes it,
+// first four lanes (dense_block.cpp, block_substitution.cpp, block_matrix.cpp). Everything here is local to the file that includes it,
 // so that no instruction of one set ends up in the other.
 //
 // Multiply-adds are always fused and always written out: the compiler does not decide where one is rounded.

@@ -12,7 +12,6 @@
 
 #include <Eigen/Core>
 #include <span>
-#include <vector>
 
 namespace cleave {
 

@@ -11,7 +11,6 @@
 // stall where the exact solve does not: that is tried before the first iteration, from the impulses of the step before, and
 // again where iterations make no progress. Where all of it fails, status and residual say so.
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -129,6 +128,7 @@ InteriorPoint::Progress InteriorPoint::watch(SolveState& state, double error) {
 
 void InteriorPoint::begin(SolveState& state) {
   const double least = state.step->least_relative_compliance();
+  state.changed_rows = std::numeric_limits<int>::max();
   has_coulomb_ = state.step->set().has_coulomb();
   end_.begin(state);
   polish_below_ = end_.first_error(state) * state.step->velocity_scale();

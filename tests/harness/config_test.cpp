@@ -197,6 +197,12 @@ TEST_F(Config, OptionsBesideItWin) {
             key(tower + Words{"--stiffness", "5000", "--damping", "10", "--strategy", "newton"}));
 }
 
+TEST_F(Config, ASessionBesideItTakesNoRepeatsFromIt) {
+  make_base();
+  replace_in_base("\"repeats\": 1", "\"repeats\": 3");
+  EXPECT_EQ(key(Words{"--config", manifest("base"), "--session"}), key(kShort + Words{"--session"}));
+}
+
 // Rows name such a scene by its content; where it lies has to be said again.
 TEST_F(Config, ASceneInAFileIsGivenBesideIt) {
   const std::string file = std::string("file@path=") + CLEAVE_SOURCE_DIR + "/scenarios/files/pile.toml";

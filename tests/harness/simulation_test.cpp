@@ -6,6 +6,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <thread>
 
@@ -237,6 +238,25 @@ TEST(Run, TimesOfTheRepeatsStandInOrder) {
     EXPECT_TRUE(waiting == "nan" || number(waiting) >= 0) << waiting;
     EXPECT_GT(number(pile.table.at(r, "peak_memory_mb")), 1);
   }
+}
+
+TEST(RunSummary, ANumberAfterOneThatIsNoneDoesNotHideIt) {
+  StepRecord row;
+  RunSummary summary;
+  for (const auto& [status, residual] :
+       {std::pair{"not_converged", 0.5}, std::pair{"timeout", kUnmeasured}, std::pair{"ok", 1e-12}}) {
+    row.status = status;
+    row.residual_m_per_s = residual;
+    summary.add(row);
+  }
+  EXPECT_EQ(summary.worst_residual_m_per_s, 0.5);  // a solve that ended without a result has no residual
+  row.status = "diverged";
+  row.residual_m_per_s = kUnmeasured;
+  summary.add(row);
+  row.status = "ok";
+  row.residual_m_per_s = 1e-12;
+  summary.add(row);
+  EXPECT_TRUE(std::isnan(summary.worst_residual_m_per_s));
 }
 
 TEST(RunSummary, SaysWhenSolvesWaitedForACore) {

@@ -54,6 +54,15 @@ TEST(WholeFile, KeepsTheOldFileWhenTheNewOneCannotTakeItsName) {
   EXPECT_FALSE(fs::exists(part_name_of(folder / "a")));
 }
 
+TEST(WholeFile, OfSeveralNoneLeavesItsPartWhereOneCannotTakeItsName) {
+  const fs::path folder = empty_folder("several");
+  // Named twice, the file has gone to its place when it is to go there again.
+  const NamedBytes files[] = {{folder / "a", "1"}, {folder / "a", "2"}, {folder / "b", "3"}};
+  EXPECT_THROW(write_whole_files(files), std::runtime_error);
+  EXPECT_EQ(text_of(folder / "a"), "2");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 1);
+}
+
 TEST(WholeFile, SaysThatTheDeviceIsFull) {
   const fs::path folder = empty_folder("full");
   fs::create_symlink("/dev/full", part_name_of(folder / "a"));

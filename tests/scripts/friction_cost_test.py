@@ -14,7 +14,7 @@ from synthetic import PROGRAM
 from cleave_scripts.documents import friction
 from cleave_scripts.documents.stored import Stored
 from cleave_scripts.measurements.friction_cost import COLUMNS, SIDE_BY_SIDE, cone_cases, law_cases
-from cleave_scripts.measurements.friction_law import friction_mismatch, mismatch_of
+from cleave_scripts.measurements.friction_law import mismatch_of
 from cleave_scripts.measurements.friction_ratios import cone_costs, law_costs
 
 STAND_IN = NOTES_ITS_CALL + """import friction_cost_test

@@ -7,13 +7,13 @@ import unittest
 
 import pandas
 from stand_in import NOTES_ITS_CALL, StandInCase
-from synthetic import ROOT, good_row, write_manifest, write_steps
+from synthetic import good_row, write_manifest, write_steps
 
 from cleave_scripts.figures import hidden_claims
 from cleave_scripts.figures.tree import read_tree
 from cleave_scripts.measurements import hidden_choices
 from cleave_scripts.measurements.hidden_choices import BFS, CUT, MIX, MR, TIME, Setting, Settings
-from cleave_scripts.results.paper import COMBINATIONS, REFINERS, SCENES, load_paper_table1
+from cleave_scripts.results.paper import REFINERS, SCENES, load_paper_table1
 
 PAPER = load_paper_table1()
 PARTITIONERS = ("mindp", "maxdp", *BFS, *MR, *MIX)

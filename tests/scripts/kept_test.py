@@ -9,7 +9,7 @@ import time
 import unittest
 
 from stand_in import StandInCase
-from synthetic import ROOT, SCRIPTS
+from synthetic import SCRIPTS
 
 from cleave_scripts.results.kept import Journal
 

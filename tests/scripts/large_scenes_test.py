@@ -9,7 +9,7 @@ import unittest.mock
 import numpy
 import stored_data
 from stand_in import NOTES_ITS_CALL, StandInCase
-from synthetic import PROGRAM, ROOT
+from synthetic import PROGRAM
 
 from cleave_scripts.documents import large
 from cleave_scripts.documents.stored import Stored

@@ -334,8 +334,9 @@ json.dump({"benchmarks": [
     {"name": f"{row}/{pile}/x", "run_name": f"{row}/{pile}", "cpu_time": 1, "run_type": "iteration",
      "real_time": time + (8 if row == "exact" else 0), "rows": 1000, "factorizations": 5, "residual_m_per_s": 1e-12, "mflop": 6}
     for row in rows for pile in piles for time in (2, 2, 50)] + [
-    {"name": "rocks_200/mix+fm/repeats:3", "run_name": "rocks_200/mix+fm", "cpu_time": time, "real_time": 3, "bodies": 200}
-    for time in (1, 2, 9)]}, open(path, "w"))
+    {"name": "rocks_200/mix+fm/repeats:3", "run_name": "rocks_200/mix+fm", "cpu_time": time, "real_time": 3, "bodies": 200,
+     "run_type": run_type}
+    for time, run_type in ((1, "iteration"), (2, "iteration"), (9, "iteration"), (0.1, "aggregate"), (0.2, "aggregate"))]}, open(path, "w"))
 """
 
 

@@ -10,10 +10,11 @@ import pandas
 from matplotlib.colors import to_rgb
 from report_data import report_row, rows_of, whole_system, write_run, write_tree
 
-from cleave_scripts.figures import choose, data, interface_cost, looks, style
+from cleave_scripts.figures import data, interface_cost, looks, style
 from cleave_scripts.figures.registry import FIGURES
 from cleave_scripts.figures.runs import runs_body
 from cleave_scripts.motion.colour_vision import contrast
+from cleave_scripts.results.names import title
 from cleave_scripts.results.paper import PARTITIONERS, SCENES
 
 def difference(first, second):
@@ -255,7 +256,7 @@ class InterfaceCostTest(FigureCase):
                     row["t_s_ms"] = "nan"
             write_run(self.directory / scene, rows)
         axes = self.draw("interface_cost").axes
-        self.assertEqual([ax.get_title(loc="left") for ax in axes], list(map(choose.title, SCENES)))
+        self.assertEqual([ax.get_title(loc="left") for ax in axes], list(map(title, SCENES)))
         texts = [[text.get_text() for text in ax.texts] for ax in axes]
         self.assertEqual(texts, [["no constraint is cut"], ["no data"], [], []])
 

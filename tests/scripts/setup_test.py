@@ -1,5 +1,4 @@
 """scripts/setup, scripts/test and .ci/run against stand-ins for apt-get, cmake and ctest."""
-import os
 import pathlib
 import shutil
 import subprocess

@@ -9,7 +9,7 @@ import tempfile
 import unittest
 
 from slurm_cluster import NODES, Cluster, until
-from synthetic import PROGRAM, ROOT, SCRIPTS
+from synthetic import PROGRAM, SCRIPTS
 
 TASKS = 4
 # Two cells a task, each some seconds on an idle core.

@@ -1,8 +1,6 @@
 """scripts/tradeoff: what is made of its rows, and the command with a stand-in for the program."""
 import csv
 import math
-import os
-import pathlib
 import unittest
 
 from stand_in import NOTES_ITS_CALL, StandInCase

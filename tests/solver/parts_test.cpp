@@ -74,6 +74,8 @@ TEST(PartsCheckTest, NamesWhatIsWrong) {
   EXPECT_EQ(find_error({0, 1, 3, 2}, tree, 4), "part_of_body[2] = 3, allowed: 0 to 2, a leaf");
   EXPECT_EQ(find_error({0, 1, 1, -1}, tree, 4), "part_of_body[3] = -1, allowed: 0 to 2, a leaf");
   EXPECT_EQ(find_error({1}, {-1}, 1), "part_of_body[0] = 1, allowed: 0, a leaf");
+  EXPECT_EQ(find_error({0, 1, 4, 2}, {}, 4), "part_of_body[2] = 4, allowed: 0 to 3");
+  EXPECT_EQ(find_error({0, 3, 1, -1}, {}, 4), "part_of_body[3] = -1, allowed: 0 to 3");
 }
 
 TEST(PartsCheckTest, AllocatesNothingTheSecondTime) {

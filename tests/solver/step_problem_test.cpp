@@ -162,6 +162,18 @@ const Damage kDamages[] = {
     {"BoxAngleOfOtherFriction",
      [](StepProblem& p) { turn_first_box(p, 0.5), p.friction_row[1] = p.friction_row[2] = 3; },
      "box_angle_rad[0] = 0.5, allowed: 0 but on a normal row"},
+    {"BoxAngleOfThreeTangents",
+     [](StepProblem& p) {
+       turn_first_box(p, 0.5), std::copy_n(p.row_body.begin(), 2, p.row_body.begin() + 6);
+       p.row_kind[3] = RowKind::friction, p.friction_row[3] = 0;
+     },
+     "box_angle_rad[0] = 0.5, allowed: 0 but on a normal row"},
+    {"BoxAngleOfAStrayTangent",
+     [](StepProblem& p) {
+       turn_first_box(p, 0.5), std::copy_n(p.row_body.begin(), 6, p.row_body.begin() + 6);
+       p.friction_row[4] = 0;
+     },
+     "friction_row[4] = 0, allowed: another row, as box_angle_rad there is not 0"},
     {"BoxAngleOfOtherBodies", [](StepProblem& p) { turn_first_box(p, 0.5), p.row_body[5] = 1; },
      "box_angle_rad[0] = 0.5, allowed: 0 but on a normal row"},
     {"BoxAngleAtTheEnd",

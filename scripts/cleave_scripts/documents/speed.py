@@ -4,6 +4,7 @@ import statistics
 
 from cleave_scripts.documents.stored import need
 from cleave_scripts.measurements import dense_ratios, model_ratios, modelled_times, solver_ratios, thread_times
+from cleave_scripts.results.names import title
 from cleave_scripts.results.paper import BEST, SCENES
 from cleave_scripts.table import text
 
@@ -49,7 +50,7 @@ def model(stored):
                 for data, threads in ((ONE_THREAD, 1), (TWO_THREADS, 2)))
     found = model_ratios.compare(one, two)
     ratios = model_ratios.ratios(need(found.pairs, "the model"), ("scene",))
-    lines = [[scene.replace("_", " ").title(), len(ratios[scene,]),
+    lines = [[title(scene), len(ratios[scene,]),
               *map(text.number, model_ratios.quartiles(ratios[scene,]))] for scene in SCENES if (scene,) in ratios]
     return (f"Modelled over measured t_s on two threads, rows of `{ONE_THREAD[0]}` against those of `{TWO_THREADS[0]}` "
             f"({stored.origin(ONE_THREAD[0])}); {found.waited} pairs that waited for a core are "

@@ -86,7 +86,8 @@ def _most(rows):
     for low, high, limit in ((0, 1e3, 40), (1e3, 1e6, 70)):
         counts = [int(row["factorizations"]) for row in soft if low < float(row["mass_ratio"]) <= high]
         if counts:
-            parts.append(f"at most {max(counts)} factorisations (asked: {limit}) at mass ratios up to {high:.0e}".replace("e+0", "e"))
+            between = f"above {low:.0e}, up to {high:.0e}" if low else f"up to {high:.0e}"
+            parts.append(f"at most {max(counts)} factorisations (asked: {limit}) at mass ratios {between}".replace("e+0", "e"))
     rigid = [int(row["factorizations"]) for row in rows if float(row["cfm"]) == 0]
     if rigid:
         parts.append(f"at most {max(rigid)} without any compliance, when proximal steps may have to follow")

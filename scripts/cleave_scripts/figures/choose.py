@@ -4,12 +4,8 @@ import pandas
 from cleave_scripts.figures.tree import NoData, need
 from cleave_scripts.results.command_line import counted
 from cleave_scripts.results.manifest import machine
-from cleave_scripts.results.names import in_order
+from cleave_scripts.results.names import in_order, title
 from cleave_scripts.results.paper import REFINERS, SCENES
-
-
-def title(scene):
-    return scene.replace("_", " ").title()
 
 
 def combinations(rows):

@@ -3,9 +3,9 @@ import functools
 
 import numpy
 
-from cleave_scripts.figures.choose import title
 from cleave_scripts.figures.claim import (HALF, Claim, LeastOf, cell_name, every_gain, exponent_difference, gain,
                                           gain_of_lowest, lowest)
+from cleave_scripts.results.names import title
 from cleave_scripts.results.paper import PARTITIONERS, REFINERS, SCENES
 
 SAME_EXPONENT = 0.1  # growth exponents this close are the same

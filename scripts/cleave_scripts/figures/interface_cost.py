@@ -5,8 +5,9 @@ The trend is fitted only where the data can tell it; elsewhere a line has the sl
 import numpy
 
 from cleave_scripts.figures import looks, style
-from cleave_scripts.figures.choose import provenance, scenes_with, title
+from cleave_scripts.figures.choose import provenance, scenes_with
 from cleave_scripts.figures.tree import NoData
+from cleave_scripts.results.names import title
 
 ITERATIONS = 200
 DEAR = 1.5  # a combination is dear when it takes that many times the least time

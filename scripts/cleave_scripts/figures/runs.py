@@ -2,10 +2,10 @@
 import re
 
 from cleave_scripts.figures import page
-from cleave_scripts.figures.choose import step_count, title
+from cleave_scripts.figures.choose import step_count
 from cleave_scripts.figures.table_html import rich
 from cleave_scripts.results.manifest import machine
-from cleave_scripts.results.names import in_order
+from cleave_scripts.results.names import in_order, title
 from cleave_scripts.results.paper import SCENES
 
 HEAD = ("directories", "scenes", "solvers", "steps measured", "rows ok", "state")

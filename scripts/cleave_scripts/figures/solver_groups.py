@@ -1,8 +1,9 @@
 """Setups that several solvers have solved, and their rows on the steps they share."""
 import pandas
 
-from cleave_scripts.figures.choose import repeats, title
+from cleave_scripts.figures.choose import repeats
 from cleave_scripts.results.command_line import counted
+from cleave_scripts.results.names import title
 
 MOST_PANELS = 4
 

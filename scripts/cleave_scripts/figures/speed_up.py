@@ -4,9 +4,9 @@ import re
 import pandas
 
 from cleave_scripts.figures import looks, style
-from cleave_scripts.figures.choose import machines, preference, title
+from cleave_scripts.figures.choose import machines, preference
 from cleave_scripts.figures.tree import NoData
-from cleave_scripts.results.names import NO_PARTITIONER
+from cleave_scripts.results.names import NO_PARTITIONER, title
 
 MODEL = re.compile(r"t_s_model_p(\d+)_ms")
 SPREAD = 1.35  # ratio of the places of the last and the first mark of as many workers

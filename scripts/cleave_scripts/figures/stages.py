@@ -5,10 +5,10 @@ import statistics
 import pandas
 
 from cleave_scripts.figures import looks, style
-from cleave_scripts.figures.choose import provenance, scenes_with, title
+from cleave_scripts.figures.choose import provenance, scenes_with
 from cleave_scripts.figures.solver_groups import MOST_PANELS, groups, shared_rows
 from cleave_scripts.figures.tree import NoData
-from cleave_scripts.results.names import NO_PARTITIONER
+from cleave_scripts.results.names import NO_PARTITIONER, title
 
 COLUMNS = 2
 LONGEST_BAR = 3  # medians of a panel; longer bars are cut

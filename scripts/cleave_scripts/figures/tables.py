@@ -2,13 +2,13 @@
 import html
 
 from cleave_scripts.figures import page, style
-from cleave_scripts.figures.choose import title
 from cleave_scripts.figures.table_html import chip, table1, verdict_table
 from cleave_scripts.figures.tree import NoData
 from cleave_scripts.figures.verdicts import as_frame
 from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.manifest import machine
+from cleave_scripts.results.names import title
 from cleave_scripts.results.paper import load_paper_table1
 from cleave_scripts.results.whole_file import write_text
 from cleave_scripts.table.formats import FORMATS

@@ -5,7 +5,8 @@ import statistics
 import matplotlib.lines
 
 from cleave_scripts.figures import looks, style
-from cleave_scripts.figures.choose import merged_runs, provenance, scenes_with, title
+from cleave_scripts.figures.choose import merged_runs, provenance, scenes_with
+from cleave_scripts.results.names import title
 
 BAR_WIDTH = 0.8
 MOST_LETTERS = 40  # of names side by side below a panel; more stand aslant

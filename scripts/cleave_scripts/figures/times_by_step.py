@@ -1,7 +1,8 @@
 """Figure 5 of the paper: t_s of every measured step on Log Tower, one partitioner with each refiner, peaks marked."""
 from cleave_scripts.figures import looks, style
-from cleave_scripts.figures.choose import merged_runs, most_steps, provenance, title
+from cleave_scripts.figures.choose import merged_runs, most_steps, provenance
 from cleave_scripts.figures.tree import need
+from cleave_scripts.results.names import title
 from cleave_scripts.results.paper import PAPER
 
 SCENE = PAPER["figure5"]["scene"]

@@ -3,6 +3,7 @@ import numpy
 
 from cleave_scripts.figures import style
 from cleave_scripts.figures.tree import CLAIMS_FILE, NoData
+from cleave_scripts.results.names import in_order
 
 BY = {"cut": "interface rows", "time": "time"}
 WIDE = 4  # columns, of a group whose heading fits two lines
@@ -18,7 +19,7 @@ def draw(data):
 def draw_map(rows):
     """rows: frame of hidden_choices_claims.csv. (figure, caption)"""
     claims = list(dict.fromkeys(zip(rows["claim"], rows["row"])))
-    columns = [(by, order, size) for by in BY for order in ORDERS
+    columns = [(by, order, size) for by in BY for order in in_order(rows["order"], ORDERS)
                for size in sorted(rows.loc[(rows["by"] == by) & (rows["order"] == order), "max_bodies"].unique())]
     if not claims or not columns:
         raise NoData("no row of a claim")

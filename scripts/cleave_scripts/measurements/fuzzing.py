@@ -114,7 +114,10 @@ def minimise(programs, name, out):
 def commit():
     """What is checked out now."""
     def git(*arguments):
-        return subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, text=True, check=True).stdout.strip()
+        done = subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise ResultError(f"{ROOT}: git does not say what is checked out")
+        return done.stdout.strip()
     return git("rev-parse", "--short=10", "HEAD") + (" with local changes" if git("status", "--porcelain") else "")
 
 

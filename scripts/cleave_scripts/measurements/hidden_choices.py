@@ -90,7 +90,10 @@ class Settings:
 
     def __init__(self, table):
         self.all = settings(table)
-        self.cut_solver, = set(table["solver"]) - {PAPER["solver"]}
+        others = sorted(set(table["solver"]) - {PAPER["solver"]})
+        if len(others) != 1:
+            raise ResultError(f"the campaign needs {PAPER['solver']} and one other solver, for the cuts; it has {', '.join(others) or 'none'}")
+        self.cut_solver, = others
         self._lookup = {}
         for row in table.itertuples():
             if row.scene != "log_tower" or row.logs == PAPERS_LOGS:
@@ -103,7 +106,10 @@ class Settings:
         """Of the table of means; cell: (scene, partitioner, refiner) of the paper."""
         solver = PAPER["solver"] if by == TIME else self.cut_solver
         scene, partitioner, refiner = cell
-        return self._lookup[solver, scene, setting.max_bodies, setting.body_order, setting.name_of(partitioner), refiner]
+        names = scene, setting.max_bodies, setting.body_order, setting.name_of(partitioner), refiner
+        if (solver, *names) not in self._lookup:
+            raise ResultError(f"the campaign has no cell of {', '.join(map(str, names))} by {solver}")
+        return self._lookup[solver, *names]
 
     def value(self, setting, cell, by):
         return self.row(setting, cell, by).t_s_ms if by == TIME else self.row(setting, cell, by).interface_rows

@@ -4,8 +4,9 @@ import string
 
 import matplotlib.pyplot as pyplot
 
-from cleave_scripts.motion.picture_sheets import chosen_index, frame_of, of_scene, show, side_by_side, title_of
+from cleave_scripts.motion.picture_sheets import chosen_index, frame_of, of_scene, show, side_by_side
 from cleave_scripts.motion.pictures import Stage, picture_with_graph
+from cleave_scripts.results.names import title
 from cleave_scripts.results.paper import PAPER
 
 SCENES = PAPER["figure1"]["scenes"]
@@ -27,7 +28,7 @@ def draw(motions, options):
     figure, all_axes = pyplot.subplots(1, len(SCENES), figsize=(4 * len(SCENES), 4.5), layout="constrained")
     for axes, scene, letter in zip(all_axes, SCENES, string.ascii_lowercase):
         show(axes, pictures.get(scene, "no measured step recorded"))
-        caption = f"({letter}) {title_of(scene)}"
+        caption = f"({letter}) {title(scene)}"
         if scene in shown:
             stage, index = shown[scene]
             measured = stage.motion.measured

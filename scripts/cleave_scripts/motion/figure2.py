@@ -4,8 +4,9 @@ import functools
 import matplotlib.pyplot as pyplot
 
 from cleave_scripts.motion.picture_sheets import (cells_of, chosen_index, colours_of_cells, frame_of, names_of, of_scene,
-                                                  show, side_by_side, title_of)
+                                                  show, side_by_side)
 from cleave_scripts.motion.pictures import Stage, picture_of_parts
+from cleave_scripts.results.names import title
 from cleave_scripts.results.paper import PAPER
 
 SCENE = PAPER["figure2"]["scene"]
@@ -23,7 +24,7 @@ def draw(motions, options):
                                    layout="constrained")
     if cells:
         figure.suptitle(
-            f"{title_of(motion.scene)}, step {motion.measured.step[index]}, {motion.bodies} bodies: "
+            f"{title(motion.scene)}, step {motion.measured.step[index]}, {motion.bodies} bodies: "
             "colour = part, red = constraints between parts",
             fontsize=17)
     for axes, partitioner in zip(grid[0], partitioners):

@@ -6,8 +6,9 @@ import numpy
 
 from cleave_scripts.motion.looks import look_of
 from cleave_scripts.motion.part_colouring import colour_sequence
-from cleave_scripts.motion.picture_sheets import best_cell, cells_of, show, side_by_side, title_of
+from cleave_scripts.motion.picture_sheets import best_cell, cells_of, show, side_by_side
 from cleave_scripts.motion.pictures import Stage, picture_of_bodies
+from cleave_scripts.results.names import title
 
 PICTURE_IN = 2.0  # wide
 ASPECT = 4 / 3
@@ -55,7 +56,7 @@ def _sheet(strips, pictures, columns):
     figure.get_layout_engine().set(w_pad=0.01, h_pad=0.04, wspace=0, hspace=0)
     parts = numpy.atleast_1d(figure.subfigures(len(strips), 1, height_ratios=heights))
     for part, (motion, frames), count in zip(parts, strips, lines):
-        part.suptitle(f"{title_of(motion.scene)}, {motion.bodies} bodies", fontsize=14, x=0.01, ha="left")
+        part.suptitle(f"{title(motion.scene)}, {motion.bodies} bodies", fontsize=14, x=0.01, ha="left")
         grid = part.subplots(count, columns, squeeze=False)
         for axes in grid.ravel()[len(frames):]:
             axes.set_visible(False)

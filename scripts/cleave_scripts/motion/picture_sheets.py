@@ -12,10 +12,6 @@ from cleave_scripts.results.names import NO_PARTITIONER, in_order
 from cleave_scripts.results.paper import BEST, COMBINATIONS, PARTITIONERS, REFINERS
 
 
-def title_of(scene):
-    return scene.replace("_", " ").title()
-
-
 def show(axes, picture):
     """A picture, or a marked gap with the reason."""
     axes.set_xticks([])

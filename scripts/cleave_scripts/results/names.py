@@ -16,6 +16,11 @@ def said_parameters(text):
     return dict(re.findall(r"([\w-]+)=([^@,;]*)", text.partition("@")[2]))
 
 
+def title(scene):
+    """'Rock Pile' of 'rock_pile'."""
+    return scene.replace("_", " ").title()
+
+
 def in_order(names, first=()):
     """Each name once: those of `first` in its order, then the others in theirs."""
     names = dict.fromkeys(names)

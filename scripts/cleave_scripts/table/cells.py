@@ -2,6 +2,8 @@
 import dataclasses
 import math
 
+from cleave_scripts.results.names import title
+
 MOST_WAITING = 0.05  # of t_s, for a core; above it a mean says more of the machine's other work
 
 
@@ -65,4 +67,4 @@ class SceneTable:
 
     @property
     def title(self):
-        return self.scene.replace("_", " ").title()
+        return title(self.scene)
