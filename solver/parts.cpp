@@ -13,10 +13,20 @@ std::string range_text(int first, int last) {
   return std::to_string(first) + (last > first ? " to " + std::to_string(last) : "");
 }
 
+// ids: 0..count - 1.
+std::string find_id_error(std::span<const int> part_of_body, int count, const char* what) {
+  for (std::size_t body = 0; body < part_of_body.size(); ++body) {
+    const int part = part_of_body[body];
+    if (part < 0 || part >= count)
+      return entry_text("part_of_body", static_cast<int>(body), part, range_text(0, count - 1) + what);
+  }
+  return {};
+}
+
 }  // namespace
 
 // A parent comes later, so that the last node is a root and no walk upwards goes round in circles.
-std::string PartsCheck::find_tree_error(std::span<const int> parent_of_part) {
+std::string PartsCheck::find_parent_error(std::span<const int> parent_of_part) {
   const int nodes = static_cast<int>(parent_of_part.size());
   has_child_.assign(nodes, false);
   for (int node = 0; node < nodes; ++node) {
@@ -34,21 +44,22 @@ std::string PartsCheck::find_tree_error(std::span<const int> parent_of_part) {
   return {};
 }
 
-std::string PartsCheck::find_error(const Parts& parts, int bodies) {
+std::string PartsCheck::find_tree_error(const Parts& parts, int bodies) {
   const int entries = static_cast<int>(parts.part_of_body.size());
   if (entries != bodies)
     return "part_of_body has " + std::to_string(entries) + " entries, needs one per body";
-  const bool is_tree = !parts.parent_of_part.empty();
-  std::string error = is_tree ? find_tree_error(parts.parent_of_part) : "";
+  if (parts.parent_of_part.empty()) return {};
+  std::string error = find_parent_error(parts.parent_of_part);
   if (!error.empty()) return error;
-  int leaves = is_tree ? 0 : bodies;
-  while (is_tree && leaves < static_cast<int>(has_child_.size()) && !has_child_[leaves]) ++leaves;
-  for (int body = 0; body < bodies; ++body) {
-    const int part = parts.part_of_body[body];
-    if (part < 0 || part >= leaves)
-      return entry_text("part_of_body", body, part, range_text(0, leaves - 1) + (is_tree ? ", a leaf" : ""));
-  }
-  return {};
+  int leaves = 0;
+  while (leaves < static_cast<int>(has_child_.size()) && !has_child_[leaves]) ++leaves;
+  return find_id_error(parts.part_of_body, leaves, ", a leaf");
+}
+
+std::string PartsCheck::find_error(const Parts& parts, int bodies) {
+  const std::string error = find_tree_error(parts, bodies);
+  if (!error.empty() || !parts.parent_of_part.empty()) return error;
+  return find_id_error(parts.part_of_body, bodies, "");
 }
 
 }  // namespace cleave

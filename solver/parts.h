@@ -38,8 +38,11 @@ class PartsCheck {
   // Empty, or in one line what is wrong with parts of so many bodies: entry, value and what is allowed.
   std::string find_error(const Parts& parts, int bodies);
 
+  // The same, but the ids of a single level are not looked at, only how many there are.
+  std::string find_tree_error(const Parts& parts, int bodies);
+
  private:
-  std::string find_tree_error(std::span<const int> parent_of_part);
+  std::string find_parent_error(std::span<const int> parent_of_part);
 
   std::vector<bool> has_child_;  // (nodes)
 };

@@ -106,7 +106,7 @@ void require_texts(const ProblemFile& file, Requirements& require) {
 std::string find_parts_error(const ProblemFile& file) {
   for (const auto& [label, partition] : file.partitions) {
     const Parts parts(partition.part_of_body, partition.parent_of_part);
-    const std::string error = PartsCheck().find_error(parts, file.problem.body_count());
+    const std::string error = PartsCheck().find_tree_error(parts, file.problem.body_count());
     if (!error.empty()) return "partition/" + printable(label) + "/" + error;
   }
   return {};

@@ -60,7 +60,7 @@ TEST(ModelRun, ReplayTakesItAndRecordsNothing) {
 // Of what was left out the file of the problem knows nothing: the interface is that of the rows that were solved.
 TEST(ModelRun, AReplayWithPartsAndSolutionsVerifies) {
   const TemporaryDirectory scratch;
-  ASSERT_EQ(run_cleave({"record", "--scene", "rock_pile", "--bodies", "30", "--at", "20,30,40", "--out",
+  ASSERT_EQ(run_cleave({"record", "--scene", "rock_pile", "--bodies", "30", "--at", "100,150,199", "--out",
                         scratch / "recorded"})
                 .exit_code,
             0);
@@ -78,8 +78,8 @@ TEST(ModelRun, AReplayWithPartsAndSolutionsVerifies) {
                   "--write-solutions",
                   "--out",
                   scratch / "out"};
-  for (const char* step : {"20", "30", "40"})
-    replay.push_back(scratch / (std::string("recorded/rock_pile_step0000") + step + ".h5"));
+  for (const char* step : {"100", "150", "199"})
+    replay.push_back(scratch / (std::string("recorded/rock_pile_step000") + step + ".h5"));
   const ProgramResult replayed = run_cleave(replay);
   ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
   const CsvTable rows = read_csv(scratch / "out/steps.csv");

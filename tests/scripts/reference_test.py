@@ -114,7 +114,7 @@ class ReferenceTest(unittest.TestCase):
     def test_all_is_made_in_order_and_replaces_what_was_there(self):
         calls, said = self.run_it()
         self.assertEqual([call.split()[0] for call in calls], [stage.command[0] for stage in STAGES] + ["readme_tables"])
-        self.assertIn("[1/29] matrix, about 20 min: scripts/reproduce --measure-every 10 --out out/reference/report", said)
+        self.assertIn("[1/29] matrix, about 25 min: scripts/reproduce --measure-every 10 --out out/reference/report", said)
         self.assertEqual(self.results(), {
             "README.md", "torture/torture.json", "provenance.json", "extremes.csv", "solver_benchmark.json",
             "partition_benchmark.json",

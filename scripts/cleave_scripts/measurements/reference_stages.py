@@ -21,7 +21,7 @@ class Stage:
 
 
 STAGES = (
-    Stage("matrix", ("reproduce", "--measure-every", "10", "--out", "{out}"), 20, REPORT,
+    Stage("matrix", ("reproduce", "--measure-every", "10", "--out", "{out}"), 25, REPORT,
           runs=(("paper", "full"),)),
     Stage("report_runs", ("report_runs", "--measure-every", "25", "--out", "{out}"), 7, REPORT,
           runs=tuple((name, f"report/{name.removeprefix('report/')}") for name in REPORT_RUNS)),
