@@ -125,7 +125,8 @@ void DirectSolver::solve_in_memory(const StepProblem& problem, const Parts& part
     StageTimer timer(clock_, Stage::analyze);
     step_.prepare(problem, &state_.tasks);
   }
-  if (carried_ != nullptr) carried_->begin_step(state_.changed_rows);
+  state_.last_changed_rows = std::exchange(state_.changed_rows, std::numeric_limits<int>::max());
+  if (carried_ != nullptr) carried_->begin_step(state_.last_changed_rows);
   plan_analysis(parts);
   state_.part_of_body = parts.part_of_body;
   warm_impulse_ = solution.impulse;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "harness/base/larger_or_nan.h"
 #include "solver/cone_lanes.h"
 
 namespace cleave {
@@ -19,8 +20,6 @@ std::size_t first_cone(const StepProblem& problem) {
   const auto no_box = [](ContactSet set) { return set != ContactSet::box; };
   return std::ranges::find_if(problem.contact_set, no_box) - problem.contact_set.begin();
 }
-
-double larger_or_nan(double a, double b) { return a > b || std::isnan(a) ? a : b; }
 
 FrictionCone cone_of(const StepProblem& problem, int normal) {
   const bool two_tangents = normal + 2 < problem.row_count() && problem.friction_row[normal + 2] == normal;

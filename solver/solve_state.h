@@ -138,8 +138,9 @@ struct SolveState {
   std::vector<WeightBlock> blocks;  // of the present factor: the axes of the set, then one a cone
   std::vector<double> shift;        // (cones) m/s, zero but for Coulomb's law; empty where no cone is
   std::vector<double> f_v, f_r, dv, dlambda;  // right-hand sides and increments
-  // In a session: rows that the last solve left in another state than the warm start had told; all where it does not know.
-  int changed_rows = std::numeric_limits<int>::max();
+  // In a session: rows that a solve left in another state than the warm start had told; all where its strategy does not say.
+  // The last solve's, and this one's.
+  int last_changed_rows = std::numeric_limits<int>::max(), changed_rows = std::numeric_limits<int>::max();
   std::vector<int> violated;        // rows found by find_violations
   std::vector<double> row_impulse;  // (m) scratch: impulses in rows where a box is turned
   std::vector<double> law_slack;    // (m) scratch: slacks with the shift of the present velocities

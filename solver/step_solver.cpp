@@ -28,6 +28,11 @@ bool has_result(SolveStatus status) {
   return status == SolveStatus::ok || status == SolveStatus::not_converged || status == SolveStatus::diverged;
 }
 
+bool has_result(std::string_view status) {
+  const std::optional<SolveStatus> known = find_status(status);
+  return known && has_result(*known);
+}
+
 std::string StepSolver::refuse_set(const StepProblem& problem) {
   return find_set_refusal("this", "solver", problem);
 }

@@ -29,6 +29,7 @@ std::vector<std::string> status_names();
 // Whether a solve with this status left impulses that can be judged, and numbers about itself. One that was out of time
 // was ended from outside and left none.
 bool has_result(SolveStatus status);
+bool has_result(std::string_view status);  // by what to_string says; false for a name that is none
 
 // Of every solver. What one of them alone has are parameters of its registry row.
 struct SolveOptions {

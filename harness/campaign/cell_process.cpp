@@ -5,7 +5,6 @@
 #include <signal.h>
 #include <string.h>
 #include <sys/mman.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,6 +13,8 @@
 #include <cerrno>
 #include <cmath>
 #include <stdexcept>
+
+#include "harness/base/end_with_parent.h"
 
 namespace cleave {
 namespace {
@@ -39,8 +40,7 @@ void limit(int resource, rlim_t most) {
 // Between fork and exec: nothing here allocates.
 [[noreturn]] void become(char* const* words, pid_t parent, int printed, double memory_gb,
                          const cpu_set_t* cores) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(127);  // it died before it was asked for
+  end_with_parent(parent);
   ::setpgid(0, 0);
   const sigset_t set = waited_for();
   ::sigprocmask(SIG_UNBLOCK, &set, nullptr);

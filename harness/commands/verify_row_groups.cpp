@@ -6,8 +6,8 @@
 #include <set>
 
 #include "harness/base/numbers.h"
-#include "harness/commands/verify_row_sums.h"
 #include "harness/experiment/run_summary.h"
+#include "solver/step_solver.h"
 
 namespace cleave {
 namespace {

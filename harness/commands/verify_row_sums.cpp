@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <type_traits>
 
 #include "harness/base/algorithm.h"
@@ -16,6 +15,7 @@
 #include "partition/partition.h"
 #include "solver/registry.h"
 #include "solver/step_problem.h"
+#include "solver/step_solver.h"
 
 namespace cleave {
 namespace {
@@ -198,11 +198,6 @@ bool residual_is_exact(const StepsTable& table, std::size_t row) {
 bool solved_all_rows(const StepsTable& table, std::size_t row) {
   return table.number(row, "model_rows_left_out") + table.number(row, "model_rows_at_rest") ==
          table.number(row, "model_rows_returned");
-}
-
-bool has_result(const std::string& status) {
-  const std::optional<SolveStatus> known = find_status(status);
-  return known && has_result(*known);
 }
 
 bool check_cells(const StepsTable& table, const std::string& subject, CheckList& list) {

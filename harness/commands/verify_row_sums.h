@@ -20,7 +20,4 @@ bool residual_is_exact(const StepsTable& table, std::size_t row);
 // The model's last solve had every row of the problem.
 bool solved_all_rows(const StepsTable& table, std::size_t row);
 
-// The solve of the row returned something to judge.
-bool has_result(const std::string& status);
-
 }  // namespace cleave

@@ -16,6 +16,7 @@
 #include "harness/experiment/step_record.h"
 #include "harness/files/manifest.h"
 #include "solver/step_problem.h"
+#include "solver/step_solver.h"
 
 namespace cleave {
 namespace {

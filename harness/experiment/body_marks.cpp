@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "harness/base/larger_or_nan.h"
 #include "solver/residual.h"
 
 namespace cleave {
@@ -14,8 +15,7 @@ std::vector<float> largest_at_bodies(const StepProblem& problem, std::span<const
     for (int side = 0; side < 2; ++side) {
       const int body = problem.row_body[2 * r + side];
       if (body < 0) continue;
-      const double value = std::abs(of_row[r]);
-      if (!(value <= largest[body])) largest[body] = std::isnan(largest[body]) ? largest[body] : value;
+      largest[body] = larger_or_nan(largest[body], std::abs(of_row[r]));
     }
   }
   std::vector<float> rounded;

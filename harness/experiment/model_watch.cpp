@@ -6,6 +6,7 @@
 #include <span>
 
 #include "harness/base/csv_text.h"
+#include "harness/base/larger_or_nan.h"
 #include "harness/base/numbers.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/friction_box.h"
@@ -166,9 +167,8 @@ ModelFinding ModelWatch::try_out(ModelFinding finding, Change change) const {
     gone += sample.problem.row_count() - changed.row_count();
     finding.t_s_ms += before.t_s_ms;
     finding.saved_ms += before.t_s_ms - after.t_s_ms;
-    const double change_m_per_s = largest_difference(before.velocity, after.velocity);
-    if (!(change_m_per_s <= finding.change_m_per_s)) finding.change_m_per_s = change_m_per_s;
-    if (std::isnan(change_m_per_s)) break;  // nothing else can be said of it
+    finding.change_m_per_s =
+        larger_or_nan(finding.change_m_per_s, largest_difference(before.velocity, after.velocity));
   }
   if (finding.samples == 0) return finding;
   finding.rows_share = rows == 0 ? 0 : static_cast<double>(gone) / static_cast<double>(rows);

@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <cstdio>
-#include <optional>
 
+#include "harness/base/larger_or_nan.h"
 #include "solver/step_solver.h"
 
 namespace cleave {
@@ -16,20 +16,9 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
-// NaN stays, whatever comes after it.
-void take_worse(double& worst, double value) {
-  if (!std::isnan(worst) && !(value <= worst)) worst = value;
-}
-
-// Rows without a judge's number say nothing of residuals.
-bool judged(const StepRecord& row) {
-  const std::optional<SolveStatus> status = find_status(row.status);
-  return status && has_result(*status);
-}
-
 // Why the row is not ok.
 std::string reason(const StepRecord& row) {
-  if (row.status_reason != "-" && !judged(row)) return row.status_reason;
+  if (row.status_reason != "-" && !has_result(row.status)) return row.status_reason;
   return format("residual %.3g m/s", row.residual_m_per_s);
 }
 
@@ -37,9 +26,9 @@ std::string reason(const StepRecord& row) {
 
 void RunSummary::add(const StepRecord& row) {
   ++rows;
-  if (judged(row)) {
-    take_worse(worst_residual_m_per_s, row.residual_m_per_s);
-    take_worse(worst_velocity_spread_m_per_s, row.velocity_spread_m_per_s);
+  if (has_result(row.status)) {  // others say nothing of residuals
+    worst_residual_m_per_s = larger_or_nan(worst_residual_m_per_s, row.residual_m_per_s);
+    worst_velocity_spread_m_per_s = larger_or_nan(worst_velocity_spread_m_per_s, row.velocity_spread_m_per_s);
   }
   if (!std::isnan(row.t_s_waiting_ms)) {
     t_s_total_ms += row.t_s_ms;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "harness/base/hash.h"
+#include "harness/base/larger_or_nan.h"
 #include "harness/base/names.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/option_values.h"
@@ -88,11 +89,7 @@ double deepest_m(std::span<const ContactPoint> contacts) {
 double largest_difference(std::span<const double> a, std::span<const double> b) {
   if (a.size() != b.size()) return kUnmeasured;
   double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const double difference = std::abs(a[i] - b[i]);
-    if (!(difference <= largest)) largest = difference;
-    if (std::isnan(largest)) return largest;
-  }
+  for (std::size_t i = 0; i < a.size(); ++i) largest = larger_or_nan(largest, std::abs(a[i] - b[i]));
   return largest;
 }
 

@@ -83,17 +83,10 @@ void write_whole_files(std::span<const NamedBytes> files) {
   std::size_t aside = 0;
   try {
     for (; aside < files.size(); ++aside) write_aside(files[aside]);
+    for (const NamedBytes& named : files) publish_part_file(named.path);
   } catch (...) {
     while (aside > 0) ::unlink(part_name_of(files[--aside].path).c_str());
     throw;
-  }
-  for (std::size_t next = 0; next < files.size(); ++next) {
-    try {
-      publish_part_file(files[next].path);
-    } catch (...) {
-      for (; next < files.size(); ++next) ::unlink(part_name_of(files[next].path).c_str());
-      throw;
-    }
   }
 }
 

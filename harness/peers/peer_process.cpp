@@ -5,7 +5,6 @@
 #include <omp.h>
 #include <poll.h>
 #include <string.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,6 +14,7 @@
 #include <csignal>
 #include <new>
 
+#include "harness/base/end_with_parent.h"
 #include "harness/base/numbers.h"
 #include "harness/files/write_all.h"
 
@@ -58,9 +58,8 @@ bool unpack(const std::string& bytes, PeerAnswer& answer) {
 
 // A child has the calling thread alone: libraries must not look for others. Its crash is expected and leaves no core.
 void enter_child(pid_t parent) {
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(1);  // it had died before
-  ::signal(SIGINT, SIG_IGN);              // the parent says when
+  end_with_parent(parent);
+  ::signal(SIGINT, SIG_IGN);  // the parent says when
   ::signal(SIGPIPE, SIG_DFL);
   for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT}) ::signal(signal, SIG_DFL);
   const rlimit no_core{0, 0};

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "harness/base/larger_or_nan.h"
 #include "harness/world/body_terms.h"
 #include "harness/world/extract_row.h"
 #include "harness/world/joint_axes.h"
@@ -89,8 +90,7 @@ double joint_drift_m(const OdeWorld& world) {
   double widest = 0;
   const int joints = static_cast<int>(world.content().joints.size());
   for (int j = 0; j < joints; ++j) {
-    const double gap = ode_joint_gap_m(world.content().joints[j], j);
-    if (!std::isnan(widest) && !(gap <= widest)) widest = gap;
+    widest = larger_or_nan(widest, ode_joint_gap_m(world.content().joints[j], j));
   }
   return widest;
 }

@@ -128,7 +128,6 @@ InteriorPoint::Progress InteriorPoint::watch(SolveState& state, double error) {
 
 void InteriorPoint::begin(SolveState& state) {
   const double least = state.step->least_relative_compliance();
-  state.changed_rows = std::numeric_limits<int>::max();
   has_coulomb_ = state.step->set().has_coulomb();
   end_.begin(state);
   polish_below_ = end_.first_error(state) * state.step->velocity_scale();

@@ -92,7 +92,7 @@ class Pivot : public Strategy {
   static bool starts_settled(SolveState& state, double tolerance) {
     StageTimer timer(state.tasks.clock(), Stage::predict);
     const std::size_t rows = state.impulse.size();
-    return (state.options.session && is_settled(state.changed_rows, rows)) ||
+    return (state.options.session && is_settled(state.last_changed_rows, rows)) ||
            is_settled(state.find_violations(tolerance, SolveState::Violated::after_a_step), rows);
   }
 

@@ -28,6 +28,20 @@ int sum(const CsvTable& table, const std::string& column) {
   return total;
 }
 
+// The files of a pile's steps, recorded into scratch/recorded.
+Words record_pile(const TemporaryDirectory& scratch, const Words& steps) {
+  std::string at;
+  Words files;
+  for (const std::string& step : steps) {
+    at += (at.empty() ? "" : ",") + step;
+    files.push_back(scratch / ("recorded/rock_pile_step" + std::string(6 - step.size(), '0') + step + ".h5"));
+  }
+  const ProgramResult recorded = run_cleave(
+      {"record", "--scene", "rock_pile", "--bodies", "30", "--at", at, "--out", scratch / "recorded"});
+  EXPECT_EQ(recorded.exit_code, 0) << recorded.err;
+  return files;
+}
+
 TEST(ModelRun, LeavesRowsOutAndChangesNoVelocity) {
   const TemporaryDirectory scratch;
   const fs::path out = scratch / "auto";
@@ -46,12 +60,9 @@ TEST(ModelRun, LeavesRowsOutAndChangesNoVelocity) {
 
 TEST(ModelRun, ReplayTakesItAndRecordsNothing) {
   const TemporaryDirectory scratch;
-  ASSERT_EQ(run_cleave({"record", "--scene", "rock_pile", "--bodies", "30", "--at", "30", "--out",
-                        scratch / "recorded"})
-                .exit_code,
-            0);
-  const ProgramResult replay = run_cleave({"replay", scratch / "recorded/rock_pile_step000030.h5", "--solver",
-                                           "exact", "--model", "auto", "--out", scratch / "out"});
+  const ProgramResult replay =
+      run_cleave(with({"replay", "--solver", "exact", "--model", "auto", "--out", scratch / "out"},
+                      record_pile(scratch, {"30"})));
   EXPECT_EQ(replay.exit_code, 0) << replay.err;
   EXPECT_EQ(read_csv(scratch / "out/steps.csv").at(0, "model"), "auto");
   EXPECT_EQ(run_cleave({"verify", scratch / "out"}).exit_code, 0);
@@ -60,27 +71,14 @@ TEST(ModelRun, ReplayTakesItAndRecordsNothing) {
 // Of what was left out the file of the problem knows nothing: the interface is that of the rows that were solved.
 TEST(ModelRun, AReplayWithPartsAndSolutionsVerifies) {
   const TemporaryDirectory scratch;
-  ASSERT_EQ(run_cleave({"record", "--scene", "rock_pile", "--bodies", "30", "--at", "100,150,199", "--out",
-                        scratch / "recorded"})
-                .exit_code,
-            0);
-  Words replay = {"replay",
-                  "--solver",
-                  "schur,pivot:schur-bodies",
-                  "--partitioner",
-                  "mix",
-                  "--refiner",
-                  "fm",
-                  "--max-bodies",
-                  "8",
-                  "--model",
-                  "auto",
-                  "--write-solutions",
-                  "--out",
-                  scratch / "out"};
-  for (const char* step : {"100", "150", "199"})
-    replay.push_back(scratch / (std::string("recorded/rock_pile_step000") + step + ".h5"));
-  const ProgramResult replayed = run_cleave(replay);
+  const Words options = {"--solver",         "schur,pivot:schur-bodies",
+                         "--partitioner",    "mix",
+                         "--refiner",        "fm",
+                         "--max-bodies",     "8",
+                         "--model",          "auto",
+                         "--write-solutions"};
+  const Words files = record_pile(scratch, {"100", "150", "199"});
+  const ProgramResult replayed = run_cleave(with(with({"replay", "--out", scratch / "out"}, options), files));
   ASSERT_EQ(replayed.exit_code, 0) << replayed.err;
   const CsvTable rows = read_csv(scratch / "out/steps.csv");
   EXPECT_GT(sum(rows, "model_rows_left_out") + sum(rows, "model_rows_at_rest"),

@@ -10,8 +10,7 @@ def gflops(benchmarks):
     """{row: median Gflop/s}"""
     found = {}
     for entry in benchmarks:
-        if entry.get("run_type") == "iteration":
-            found.setdefault(entry["name"].removesuffix("/manual_time"), []).append(entry["gflop_per_s"])
+        found.setdefault(entry["name"].removesuffix("/manual_time"), []).append(entry["gflop_per_s"])
     return {name: statistics.median(values) for name, values in found.items()}
 
 

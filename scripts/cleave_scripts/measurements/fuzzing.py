@@ -13,7 +13,7 @@ import time
 from cleave_scripts.results.command import say
 from cleave_scripts.results.command_line import counted
 from cleave_scripts.results.errors import AlreadyTold, ResultError
-from cleave_scripts.results.programs import ROOT, run_and_watch
+from cleave_scripts.results.programs import ROOT, git, run_and_watch
 from cleave_scripts.results.whole_file import write_text
 
 TARGETS = ("csv", "manifest", "options", "scene", "problem")
@@ -113,12 +113,7 @@ def minimise(programs, name, out):
 
 def commit():
     """What is checked out now."""
-    def git(*arguments):
-        done = subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, text=True, check=False)
-        if done.returncode != 0:
-            raise ResultError(f"{ROOT}: git does not say what is checked out")
-        return done.stdout.strip()
-    return git("rev-parse", "--short=10", "HEAD") + (" with local changes" if git("status", "--porcelain") else "")
+    return git(ROOT, "rev-parse", "--short=10", "HEAD") + (" with local changes" if git(ROOT, "status", "--porcelain") else "")
 
 
 def page(out):

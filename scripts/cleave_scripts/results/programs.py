@@ -145,9 +145,17 @@ def _replayed(path, all_ok):
     return rows
 
 
+def git(root, *arguments):
+    """What git says of the checkout root."""
+    done = subprocess.run(["git", "-C", str(root), *arguments], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise ResultError(f"{root} is no git checkout")
+    return done.stdout.strip()
+
+
 def load_benchmark(path):
-    """The rows that Google Benchmark has written."""
+    """The rows that Google Benchmark has written, less what it makes of the repetitions itself (mean, median, spread)."""
     try:
-        return json.loads(path.read_text(encoding="utf-8"))["benchmarks"]
-    except (ValueError, KeyError, TypeError):
+        return [row for row in json.loads(path.read_text(encoding="utf-8"))["benchmarks"] if row.get("run_type") != "aggregate"]
+    except (AttributeError, ValueError, KeyError, TypeError):
         raise ResultError(f"{path}: not written by a benchmark program") from None
