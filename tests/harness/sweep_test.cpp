@@ -290,7 +290,7 @@ TEST(Sweep, ADryRunPrintsCellsAndCreatesNothing) {
   const ProgramResult after = campaign.sweep({"--dry-run"});
   EXPECT_EQ(parse_csv(after.out).column("status"), Words({"ok", "ok", "pending"}));
   EXPECT_GT(std::stod(parse_csv(after.out).at(2, "about_s")), 0);
-  EXPECT_TRUE(after.err.starts_with("3 cells: 2 done, 1 to do, about 0 s\n")) << after.err;
+  EXPECT_TRUE(after.err.starts_with("3 cells: 2 done, 1 to do, about ")) << after.err;
   EXPECT_EQ(campaign.manifest_times(), times);
 }
 

@@ -5,6 +5,8 @@ import json
 import pathlib
 import re
 import tempfile
+import threading
+import time
 import unittest
 from unittest import mock
 
@@ -190,6 +192,24 @@ class SectionTest(MotionTest):
             (self.directory / "package.json").write_text("{")
             with self.assertRaisesRegex(ResultError, "installing three.js and esbuild from npm"):
                 viewer.build_script()
+
+    def test_processes_that_start_together_install_the_packages_once(self):
+        (self.directory / "package.json").write_text("{}")
+        installed = []
+
+        def slow_install(*_):
+            installed.append((self.directory / "node_modules").exists())
+            time.sleep(0.2)
+            (self.directory / "node_modules").mkdir()
+            (self.directory / "node_modules" / ".package-lock.json").touch()
+
+        with mock.patch.multiple(viewer, SOURCES=self.directory, _run=slow_install):
+            threads = [threading.Thread(target=viewer._install_packages) for _ in range(4)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+        self.assertEqual(installed, [False])
 
     def test_versions_are_fixed(self):
         package = json.loads((viewer.SOURCES / "package.json").read_text())

@@ -6,6 +6,7 @@
 The sources of the page are in web/. `npm ci` brings three.js and the bundler esbuild, in the
 versions of package-lock.json, when they are not there yet.
 """
+import fcntl
 import html
 import pathlib
 import string
@@ -47,8 +48,7 @@ def viewer_page(directory, **options):
 
 def build_script():
     """The page's program with three.js in it, as text that may stand in a script element."""
-    if not (SOURCES / "node_modules" / ".bin" / "esbuild").exists():
-        _run(["npm", "ci", "--silent"], "installing three.js and esbuild from npm")
+    _install_packages()
     with tempfile.TemporaryDirectory() as directory:
         bundle = pathlib.Path(directory) / "viewer.js"
         _run([
@@ -56,6 +56,17 @@ def build_script():
             "--target=es2022", "--log-level=error", f"--outfile={bundle}"
         ], "bundling the viewer")
         return bundle.read_text(encoding="utf-8")
+
+
+def _install_packages():
+    """One process at a time: `npm ci` begins by removing what another one has installed so far."""
+    installed = SOURCES / "node_modules" / ".package-lock.json"  # npm writes it last
+    if installed.exists():
+        return
+    with (SOURCES / "package.json").open("r+b") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not installed.exists():
+            _run(["npm", "ci", "--silent"], "installing three.js and esbuild from npm")
 
 
 def _run(command, what):
