@@ -140,11 +140,21 @@ bool BlockCholesky::factor_panel(const Supernode& s) {
   return true;
 }
 
+// The lower triangle of blocks; nobody looks at the rest.
+void BlockCholesky::set_update_zero(const Supernode& s) {
+  const long ld = 6 * s.rows_below();
+  double* update = updates_.data() + s.update_offset;
+  for (long c = 0; c < ld; ++c) {
+    const long first = c / 6 * 6;
+    std::fill(update + c * ld + first, update + (c + 1) * ld, 0.0);
+  }
+}
+
 bool BlockCholesky::factor(int branch_index) {
   const Branch& branch = symbolic_.branches()[branch_index];
   for (int i = branch.first; i <= branch.last; ++i) {
     const Supernode& s = symbolic_.supernodes()[i];
-    std::fill_n(updates_.begin() + s.update_offset, 36L * s.rows_below() * s.rows_below(), 0.0);
+    set_update_zero(s);
     add_updates(i, {0, s.row_count, 0, s.row_count});
     if (!factor_panel(s)) return false;
   }

@@ -74,6 +74,7 @@ class BlockCholesky {
   };
   void add_update(const Supernode& child, const Supernode& parent, const Range& range);
   void add_updates(int supernode, const Range& range);
+  void set_update_zero(const Supernode& s);
   bool factor_panel(const Supernode& s);
 
   BlockSymbolic symbolic_;

@@ -153,7 +153,7 @@ void WorkerTeam::run(int count, Task task, void* context) {
     const int end = static_cast<int>((k + 1) * static_cast<std::int64_t>(count) / threads_);
     queues_[k].first = first;
     queues_[k].taken.store(0, std::memory_order_relaxed);
-    queues_[k].open.store(end - first, std::memory_order_release);
+    queues_[k].open.store(end - first);  // in one order with `watching_`: see call_others
     first = end;
   }
   finish_stage();

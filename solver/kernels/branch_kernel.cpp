@@ -1,6 +1,7 @@
 #include "solver/kernels/branch_kernel.h"
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
 
 namespace cleave {
@@ -26,7 +27,7 @@ void BranchKernel::analyze(const PreparedStep& step, const Parts& parts, Paralle
       std::ranges::count_if(stages_.of_body, [this](int s) { return s >= stages_.first_of_interface; }));
   const bool analyzed = matrix_.analyze_whole(step, stages_.of_body, stages_.count,
                                               BlockMatrix::most_blocks(tasks.memory().limit_bytes()));
-  if (analyzed) list_tasks();
+  if (analyzed) list_tasks(tasks.threads());
   request_memory(step, tasks, analyzed);
   matrix_.allocate();
   bind(step);
@@ -36,9 +37,10 @@ void BranchKernel::request_memory(const PreparedStep& step, ParallelTasks& tasks
   MemoryCount memory;
   matrix_.count(memory);
   separators_.count(memory);
-  for (const TaskGraph* graph : {&assembly_graph_, &substitution_graph_}) graph->count(memory);
+  assembly_graph_.count(memory);
+  substitution_.count(memory);
   for (const FactorTasks* factor : {&local_tasks_, &interface_tasks_}) factor->count(memory);
-  memory.add_grown(stages_.of_body, waits_, places_, changed_, factored_);
+  memory.add_grown(stages_.of_body, places_, changed_, factored_);
   memory.add<double>(12, step.groups().size());
   memory.add<double>(6, step.body_count());
   if (step.set().has_blocks()) memory.add<double>(12, step.row_count());
@@ -55,7 +57,7 @@ bool BranchKernel::rebind(const PreparedStep& step, const Parts&, ParallelTasks&
 }
 
 // Branches of the interface come after the others, as stages of columns of their own.
-void BranchKernel::list_tasks() {
+void BranchKernel::list_tasks(int threads) {
   const BlockSymbolic& symbolic = matrix_.cholesky().symbolic();
   const auto branches = symbolic.branches();
   const int count = static_cast<int>(branches.size());
@@ -66,24 +68,10 @@ void BranchKernel::list_tasks() {
     (branches[b].stage < stages_.first_of_interface ? local : interface).push_back(b);
   local_tasks_.list(symbolic, local);
   interface_tasks_.list(symbolic, interface);
-  list_substitution();
-}
-
-// Forward of branch b is task b, backward task 2 count - 1 - b.
-void BranchKernel::list_substitution() {
-  const auto branches = matrix_.cholesky().symbolic().branches();
-  const int count = static_cast<int>(branches.size()), last = 2 * count - 1;
-  waits_.clear();
-  places_.resize(count);
-  for (int b = 0; b < count; ++b) places_[b] = branches[b].place;
+  places_.clear();
+  for (const Branch& branch : branches) places_.push_back(branch.place);
   assembly_graph_.build(count, {}, places_);
-  for (int b = count - 1; b >= 0; --b) {
-    places_.push_back(branches[b].place);
-    const int parent = branches[b].parent;
-    waits_.emplace_back(b, parent >= 0 ? parent : last - b);
-    if (parent >= 0) waits_.emplace_back(last - parent, last - b);
-  }
-  substitution_graph_.build(2 * count, waits_, places_);
+  substitution_.join(symbolic, threads);
 }
 
 // With the rows that the weights turn, in one pass. Rows in blocks are turned by their bases too, so that equal weights do not say
@@ -124,15 +112,18 @@ bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
 template <class Before, class After>
 void BranchKernel::substitute(ParallelTasks& tasks, const Before& before, const After& after) {
   BlockCholesky& cholesky = matrix_.cholesky();
-  const int count = matrix_.branch_count();
-  tasks.run(Stage::solve, substitution_graph_, [&](int task) {
+  const int count = substitution_.count();
+  tasks.run(Stage::solve, substitution_.graph(), [&](int task) {
     if (task < count) {
-      before(task);
-      cholesky.forward(task, x_.data());
+      for (const int branch : substitution_.branches(task)) {
+        before(branch);
+        cholesky.forward(branch, x_.data());
+      }
     } else {
-      const int branch = 2 * count - 1 - task;
-      cholesky.backward(branch, x_.data());
-      after(branch);
+      for (const int branch : std::views::reverse(substitution_.branches(2 * count - 1 - task))) {
+        cholesky.backward(branch, x_.data());
+        after(branch);
+      }
     }
   });
 }

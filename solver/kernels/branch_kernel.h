@@ -5,7 +5,7 @@
 //
 // dealt out in branches of its elimination tree (block_symbolic.h). Assembly has no order; a branch is factored after its
 // child branches, in tiles where it is large (factor_tasks.h). Substitution is one graph, forward from the leaves
-// to the root and back again; what is read off rows comes before and after it, in chunks that lie side by side in memory. A kernel
+// to the root and back again, whose tasks are branches joined until they are worth one (branch_groups.h); what is read off rows comes before and after it, in chunks that lie side by side in memory. A kernel
 // only says in what order bodies are eliminated.
 //
 // Strategies that end near the solution change few weights from one factorisation to the next. Only branches with a changed
@@ -17,6 +17,7 @@
 
 #include "solver/block_matrix.h"
 #include "solver/body_system.h"
+#include "solver/branch_groups.h"
 #include "solver/factor_tasks.h"
 #include "solver/kernels/kernel.h"
 #include "solver/separators.h"
@@ -53,8 +54,7 @@ class BranchKernel : public Kernel {
 
  private:
   void bind(const PreparedStep& step);
-  void list_tasks();
-  void list_substitution();
+  void list_tasks(int threads);
   void find_changed(const RowWeights& weights, ParallelTasks& tasks);
   void request_memory(const PreparedStep& step, ParallelTasks& tasks, bool analyzed);
   template <class Before, class After>
@@ -67,9 +67,9 @@ class BranchKernel : public Kernel {
   BlockMatrix matrix_;
   int interface_bodies_ = 0;
   FactorTasks local_tasks_, interface_tasks_;
-  TaskGraph assembly_graph_, substitution_graph_;
-  std::vector<std::pair<int, int>> waits_;  // scratch
-  std::vector<double> places_;              // scratch
+  TaskGraph assembly_graph_;
+  BranchGroups substitution_;
+  std::vector<double> places_;  // scratch
   // The last factorisation failed, is not one of this analysis, or had rows turned by blocks.
   bool changed_all_ = true;
   long factored_preparation_ = 0;         // of the step

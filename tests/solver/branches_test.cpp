@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solver/block_symbolic.h"
+#include "solver/branch_groups.h"
 #include "tests/solver/seeded_random.h"
 
 namespace cleave {
@@ -107,6 +108,63 @@ TEST(BranchesTest, KeepStagesApart) {
   }
   symbolic.analyze(wide * deep, edges);
   EXPECT_GT(flops, symbolic.factor_flops(0));
+}
+
+bool waits(const TaskGraph& graph, int earlier, int later) {
+  return std::ranges::count(graph.next(earlier), later) == 1;
+}
+
+// Every branch in one task, up after all branches below it and down after all above it.
+void check_groups(const BlockSymbolic& symbolic, int threads) {
+  BranchGroups groups;
+  groups.join(symbolic, threads);
+  const int count = groups.count(), last = 2 * count - 1;
+  ASSERT_EQ(groups.graph().task_count(), 2 * count);
+  std::vector<int> group_of(symbolic.branches().size(), -1);
+  for (int g = 0; g < count; ++g) {
+    EXPECT_TRUE(std::ranges::is_sorted(groups.branches(g)));
+    for (const int b : groups.branches(g)) {
+      EXPECT_EQ(group_of[b], -1);
+      group_of[b] = g;
+    }
+  }
+  for (std::size_t b = 0; b < group_of.size(); ++b) {
+    const int group = group_of[b], parent = symbolic.branches()[b].parent;
+    ASSERT_GE(group, 0);
+    if (parent < 0) {
+      EXPECT_TRUE(waits(groups.graph(), group, last - group));
+    } else if (group_of[parent] != group) {
+      EXPECT_TRUE(waits(groups.graph(), group, group_of[parent]));
+      EXPECT_TRUE(waits(groups.graph(), last - group_of[parent], last - group));
+    }
+  }
+}
+
+TEST(BranchesTest, AreJoinedIntoTasksThatKeepTheirOrder) {
+  BlockSymbolic symbolic;
+  for (int seed = 0; seed < 50; ++seed) {
+    const Edges edges = random_edges(300, 60 + 20 * seed, seed);
+    symbolic.analyze(300, edges);
+    for (const int threads : {1, 2, 16}) check_groups(symbolic, threads);
+  }
+  symbolic.analyze(0, {});
+  check_groups(symbolic, 2);
+}
+
+TEST(BranchesTest, AreJoinedOnSeveralThreadsOnly) {
+  BlockSymbolic symbolic;
+  const Edges edges = grid(60, 20);
+  symbolic.analyze(1200, edges);
+  const int branches = static_cast<int>(symbolic.branches().size());
+  BranchGroups groups;
+  groups.join(symbolic, 1);
+  EXPECT_EQ(groups.count(), branches);
+  groups.join(symbolic, 16);
+  const int of_many = groups.count();
+  EXPECT_LT(of_many, branches);
+  groups.join(symbolic, 2);
+  EXPECT_LE(groups.count(), of_many);
+  EXPECT_GE(groups.count(), 6);
 }
 
 }  // namespace
