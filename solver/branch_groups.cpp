@@ -8,11 +8,10 @@
 namespace cleave {
 namespace {
 
-// In entries of the factor. A task has at least what takes a core about 4 microseconds on its way up, but on few bodies each
-// thread still gets some tasks. A supernode takes something besides its entries.
-constexpr double kLeastWork = 8000;
-constexpr int kTasksPerThread = 3;
-constexpr double kSupernodeWork = 100;
+// In entries of the factor. A task has at least what takes a core about 4 microseconds on its way up, but on few bodies two
+// threads still get three of them each; with more, the longest way counts more than what it costs to hand a task out: 16 workers would
+// take a seventh longer with tasks of a 48th of the work (modelled, 600 rocks). A supernode takes something besides its entries.
+constexpr double kLeastWork = 8000, kTasksPerSquareOfThreads = 1.5, kSupernodeWork = 100;
 
 double work_of(const BlockSymbolic& symbolic, const Branch& branch) {
   double work = 0;
@@ -35,7 +34,7 @@ void BranchGroups::join(const BlockSymbolic& symbolic, int threads) {
   work_.resize(count);
   for (int b = 0; b < count; ++b) work_[b] = work_of(symbolic, branches[b]);
   const double all = std::accumulate(work_.begin(), work_.end(), 0.0);
-  least_ = threads > 1 ? std::min(kLeastWork, all / (kTasksPerThread * threads)) : 0;
+  least_ = threads > 1 ? std::min(kLeastWork, all / (kTasksPerSquareOfThreads * threads * threads)) : 0;
   for (int b = 0; b < count; ++b)
     if (joins(branches[b], b)) work_[branches[b].parent] += work_[b];
   number(branches);

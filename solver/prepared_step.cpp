@@ -15,7 +15,8 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr int kChunkRows = 384, kChunkBodies = 48;
+// A chunk is a sixteenth of the rows, within limits: 16 workers have one each.
+constexpr int kLeastChunkRows = 384, kMostChunkRows = 512, kChunks = 16, kChunkBodies = 48;
 
 // Ranges of whole items with at least `least` of what size_of counts, but for the last.
 template <class Size>
@@ -47,8 +48,9 @@ void PreparedStep::prepare(const StepProblem& problem, ParallelTasks* tasks) {
   list_groups();
   list_sides();
   cut_into_chunks(
-      static_cast<int>(groups_.size()), kChunkRows, [&](int g) { return groups_[g].row_count; },
-      group_chunks_);
+      static_cast<int>(groups_.size()),
+      std::clamp((m + kChunks - 1) / kChunks, kLeastChunkRows, kMostChunkRows),
+      [&](int g) { return groups_[g].row_count; }, group_chunks_);
   cut_into_chunks(
       n, kChunkBodies, [](int) { return 1; }, body_chunks_);
   group_sums_.resize(12 * groups_.size());

@@ -26,9 +26,7 @@ void InteriorIterate::choose_impulses(SolveState& state) {
 
 // Every row starts with the same product s z, an energy: at a speed of sqrt(energy d), where light bodies
 // have a large d and heavy ones a small one. The same speed everywhere would let the heavy rule the target.
-void InteriorIterate::start(SolveState& state) {
-  choose_impulses(state);
-  state.update_shift();
+void InteriorIterate::start_rows(SolveState& state) {
   const int m = state.step->row_count();
   double energy = 0, fastest = 0;
   for (int r = 0; r < m; ++r) {
@@ -45,10 +43,22 @@ void InteriorIterate::start(SolveState& state) {
   barrier_.start(state, row_speed_);
   cones_.start(state, row_speed_);
   shift_.begin(cones_.product_count());
+}
+
+// The kernel's analysis, if it is still to be done, needs none of the rows' values.
+void InteriorIterate::start(SolveState& state) {
+  choose_impulses(state);
+  state.update_shift();
+  if (state.analysis) {
+    state.tasks.run(2, [&](int task) { task == 0 ? state.analyze() : start_rows(state); });
+  } else {
+    start_rows(state);
+  }
   state.update_velocity();
 }
 
 bool InteriorIterate::factor(SolveState& state, double delta) {
+  std::ranges::fill(state.f_v, 0.0);  // in every direction, and an attempt at the end leaves something else
   const StepProblem& problem = state.step->problem();
   const bool has_cones = cones_.product_count() > 0;
   state.run_over_rows([&](int first, int last, int) {
@@ -104,7 +114,6 @@ void InteriorIterate::match_shift(SolveState& state, double tolerance, int most)
 
 void InteriorIterate::solve(SolveState& state) {
   add_cones_to_right_hand_side(state);
-  std::fill(state.f_v.begin(), state.f_v.end(), 0.0);
   state.solve();
   course_ = barrier_.follow(state);
   const BarrierCourse of_cones = cones_.follow(state);

@@ -72,6 +72,7 @@ class InteriorIterate {
 
  private:
   void choose_impulses(SolveState& state);
+  void start_rows(SolveState& state);
   void set_products(SolveState& state, Aim aim);
   void add_cones_to_right_hand_side(SolveState& state) const;
   void solve(SolveState& state);  // with the part of the bounds in state.f_r

@@ -214,13 +214,15 @@ double IntervalBarrier::error(SolveState& state, std::span<double> row_error) {
 }
 
 void IntervalBarrier::read_active_set(SolveState& state) const {
-  for (std::size_t r = 0; r < use_.size(); ++r) {
-    state.state[r] = is_fixed(r) ? RowState::lower : RowState::free;
-    for (const Side& side : sides_) {
-      if (state.step->diagonal()[r] * side.s[r] < side.z[r])
-        state.state[r] = side.sign > 0 ? RowState::lower : RowState::upper;
+  state.run_over_rows([&](int first, int last, int) {
+    for (int r = first; r < last; ++r) {
+      state.state[r] = is_fixed(r) ? RowState::lower : RowState::free;
+      for (const Side& side : sides_) {
+        if (state.step->diagonal()[r] * side.s[r] < side.z[r])
+          state.state[r] = side.sign > 0 ? RowState::lower : RowState::upper;
+      }
     }
-  }
+  });
 }
 
 void IntervalBarrier::Side::keep(int first, int last) {
