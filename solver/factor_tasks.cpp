@@ -43,10 +43,12 @@ void FactorTasks::list(const BlockSymbolic& symbolic, std::span<const int> branc
   last_task_.assign(symbolic.branches().size(), -1);
   for (const int b : branches) {
     const Branch& branch = symbolic.branches()[b];
+    const int assembly = add({Work::assembly, b, {}}, branch.place);
     if (is_tiled(symbolic, branch)) {
-      list_front(symbolic, b);
+      list_front(symbolic, b, assembly);
     } else {
       last_task_[b] = add({Work::branch, b, {}}, branch.place);
+      waits_.emplace_back(assembly, last_task_[b]);
       wait_for_children(symbolic, b, last_task_[b]);
     }
   }
@@ -55,13 +57,15 @@ void FactorTasks::list(const BlockSymbolic& symbolic, std::span<const int> branc
 
 // The first operation on a tile of the panel is that of step 0, and waits for the tile's columns. The last ones are the
 // solves of the panel's last column, which wait for all others.
-void FactorTasks::list_front(const BlockSymbolic& symbolic, int branch) {
+void FactorTasks::list_front(const BlockSymbolic& symbolic, int branch, int assembly) {
   const FrontStrips strips(symbolic.supernodes()[symbolic.branches()[branch].last]);
   const TileSchedule schedule(strips.count(), strips.own());
   const int first_gather = task_count(), first_tile = first_gather + strips.own();
   for (int strip = 0; strip < strips.own(); ++strip) {
     const double place = static_cast<double>(strip) / strips.own();
-    wait_for_children(symbolic, branch, add({Work::gather, branch, {0, 0, strip}}, place));
+    const int gather = add({Work::gather, branch, {0, 0, strip}}, place);
+    waits_.emplace_back(assembly, gather);
+    wait_for_children(symbolic, branch, gather);
   }
   for (const TileOperation& operation : schedule.operations()) {
     const int task = add({Work::panel_tile, branch, operation}, schedule.place(task_count() - first_tile));
@@ -83,11 +87,15 @@ void FactorTasks::list_front(const BlockSymbolic& symbolic, int branch) {
     waits_.emplace_back(task, last_task_[branch]);
 }
 
-void FactorTasks::run_task(const FactorTask& task, BlockMatrix& matrix, std::vector<char>& factored) {
+void FactorTasks::run_task(const FactorTask& task, const WeightedRows& rows, BlockMatrix& matrix,
+                           std::vector<char>& factored) {
   BlockCholesky& cholesky = matrix.cholesky();
   const BlockSymbolic& symbolic = cholesky.symbolic();
   const int supernode = symbolic.branches()[task.branch].last;
   switch (task.work) {
+    case Work::assembly:
+      matrix.assemble(rows, task.branch);
+      break;
     case Work::branch:
       if (!are_factored(symbolic, task.branch, factored) || !matrix.factor(task.branch))
         flag(factored, task.branch) = 0;
@@ -108,11 +116,14 @@ void FactorTasks::run_task(const FactorTask& task, BlockMatrix& matrix, std::vec
   }
 }
 
-void FactorTasks::run(Stage stage, BlockMatrix& matrix, std::span<const char> changed,
-                      std::vector<char>& factored, ParallelTasks& tasks) const {
-  tasks.run(stage, graph_, [&](int index) {
-    if (changed[tasks_[index].branch]) run_task(tasks_[index], matrix, factored);
-  });
+void FactorTasks::run(Stage stage, const WeightedRows& rows, BlockMatrix& matrix,
+                      std::span<const char> changed, std::vector<char>& factored,
+                      ParallelTasks& tasks) const {
+  const auto run_changed = [&](int index) {
+    if (changed[tasks_[index].branch]) run_task(tasks_[index], rows, matrix, factored);
+  };
+  const auto assembles = [&](int index) { return tasks_[index].work == Work::assembly; };
+  tasks.run(stage, graph_, run_changed, Stage::assemble, assembles);
 }
 
 void FactorTasks::count(MemoryCount& memory) const {

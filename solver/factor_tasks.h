@@ -1,6 +1,7 @@
-// The factorisation of a block matrix as tasks with what each waits for.
+// Assembly and factorisation of a block matrix as tasks with what each waits for.
 //
-// A branch of the elimination tree with little work is one task. A branch that is one large front is many (front_tiles.h):
+// The assembly of a branch is a task that waits for none, so that it fills the time in which few branches can be factored.
+// A branch of the elimination tree with little work is one task more. A branch that is one large front is many (front_tiles.h):
 // the columns of its panel gather what its children left, the operations on the panel's tiles follow, then the tiles of
 // its update matrix, and one task without work tells the parent that all of them are there. Which branches are split, and
 // how, depends on the pattern alone, and every tile sees the same operations in the same order, so threads do not change
@@ -19,17 +20,18 @@ namespace cleave {
 
 class FactorTasks {
  public:
-  // Of these branches, ascending; what others they wait for is done.
+  // Of these branches, ascending; what others they wait for is done, assembly included.
   void list(const BlockSymbolic& symbolic, std::span<const int> branches);
-  // By branch, of all: changed, 1 where it is to be factored, others stand as they are; factored, 1 where a branch is.
-  // Those that meet a pivot that is not positive, and all above them, get 0.
-  void run(Stage stage, BlockMatrix& matrix, std::span<const char> changed, std::vector<char>& factored,
-           ParallelTasks& tasks) const;
+  // By branch, of all: changed, 1 where it is to be made anew from the rows, others stand as they are; factored, 1 where a branch
+  // is. Those that meet a pivot that is not positive, and all above them, get 0. On one thread assembly counts as that, on
+  // several as the stage of the factorisation.
+  void run(Stage stage, const WeightedRows& rows, BlockMatrix& matrix, std::span<const char> changed,
+           std::vector<char>& factored, ParallelTasks& tasks) const;
   int task_count() const { return static_cast<int>(tasks_.size()); }
   void count(MemoryCount& memory) const;
 
  private:
-  enum class Work { branch, gather, panel_tile, update_tile, nothing };
+  enum class Work { assembly, branch, gather, panel_tile, update_tile, nothing };
   struct FactorTask {
     Work work;
     int branch;
@@ -38,8 +40,9 @@ class FactorTasks {
 
   int add(const FactorTask& task, double place);
   void wait_for_children(const BlockSymbolic& symbolic, int branch, int task);
-  void list_front(const BlockSymbolic& symbolic, int branch);
-  static void run_task(const FactorTask& task, BlockMatrix& matrix, std::vector<char>& factored);
+  void list_front(const BlockSymbolic& symbolic, int branch, int assembly);
+  static void run_task(const FactorTask& task, const WeightedRows& rows, BlockMatrix& matrix,
+                       std::vector<char>& factored);
 
   std::vector<FactorTask> tasks_;
   TaskGraph graph_;

@@ -68,13 +68,25 @@ class ParallelTasks {
   // The tasks of a graph, which must stay as it is until the solve has ended.
   template <class Task>
   void run(Stage stage, const TaskGraph& graph, const Task& task) {
-    StageTimer timer(clock_, stage);
-    if (team_.threads() > 1 || team_.shuffles()) {
-      team_.run(graph, call<Task>, context_of(task));
-    } else {
-      run_timed(graph.task_count(), task);
-      clock_.add_graph(graph, task_ms_);
+    run(stage, graph, task, stage, [](int) { return false; });
+  }
+
+  // The same; on one thread those tasks for which is_other(index) count as another stage.
+  template <class Task, class IsOther>
+  void run(Stage stage, const TaskGraph& graph, const Task& task, Stage other, const IsOther& is_other) {
+    double other_ms = 0;
+    {
+      const StageTimer timer(clock_, stage);
+      if (team_.threads() > 1 || team_.shuffles()) {
+        team_.run(graph, call<Task>, context_of(task));
+      } else {
+        run_timed(graph.task_count(), task);
+        for (int i = 0; timer.counts() && i < graph.task_count(); ++i)
+          other_ms += is_other(i) ? task_ms_[i] : 0;
+        clock_.add_graph(graph, task_ms_);
+      }
     }
+    if (other_ms > 0) clock_.move(stage, other, other_ms);
   }
 
   StageClock& clock() { return clock_; }

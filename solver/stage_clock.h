@@ -77,6 +77,7 @@ class StageTimer {
     clock_.timing_ = false;
     clock_.add(stage_, std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin_).count());
   }
+  bool counts() const { return outermost_; }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 

@@ -17,7 +17,7 @@
 namespace cleave {
 
 WorkerTeam::WorkerTeam(int threads)
-    : threads_(threads), queues_(std::make_unique<Queue[]>(threads)), home_count_(threads) {
+    : threads_(threads), queues_(std::make_unique<Queue[]>(2 * threads)), home_count_(threads) {
   if (threads == 1) return;
   asked_look_out();  // its error belongs to the caller
   load_unwinder();
@@ -106,7 +106,8 @@ bool WorkerTeam::take_from(Queue& queue) {
 
 bool WorkerTeam::take_one(int thread) {
   for (int k = 0; k < threads_; ++k) {
-    if (take_from(queues_[(thread + k) % threads_])) return true;
+    const int home = (thread + k) % threads_;
+    if (take_from(queues_[threads_ + home]) || take_from(queues_[home])) return true;
   }
   return false;
 }
@@ -160,8 +161,8 @@ void WorkerTeam::run(int count, Task task, void* context) {
 }
 
 // An entry, then the right to take it.
-void WorkerTeam::list(int task) {
-  Queue& queue = queues_[graph_->home(task, threads_)];
+void WorkerTeam::list(int task, bool was_waiting) {
+  Queue& queue = queues_[graph_->home(task, threads_) + (was_waiting ? threads_ : 0)];
   queue.tasks[queue.listed.fetch_add(1, std::memory_order_relaxed)].store(task, std::memory_order_release);
   queue.open.fetch_add(1);
 }
@@ -171,7 +172,7 @@ void WorkerTeam::release_next(int task) {
   bool released = false;
   for (const int next : graph_->next(task)) {
     if (waits_[next].fetch_sub(1, std::memory_order_acq_rel) != 1) continue;
-    list(next);
+    list(next, true);
     released = true;
   }
   if (released) call_others();
@@ -191,13 +192,14 @@ void WorkerTeam::list_first_tasks() {
     ++home_count_[graph_->home(i, threads_)];
     if (graph_->wait_count(i) == 0) first_tasks_.push_back(i);
   }
-  for (int k = 0; k < threads_; ++k) {
+  for (int k = 0; k < 2 * threads_; ++k) {
     Queue& queue = queues_[k];
-    if (home_count_[k] > queue.capacity) {
-      queue.tasks = std::make_unique<std::atomic<int>[]>(home_count_[k]);
-      queue.capacity = home_count_[k];
+    const int most = home_count_[k % threads_];
+    if (most > queue.capacity) {
+      queue.tasks = std::make_unique<std::atomic<int>[]>(most);
+      queue.capacity = most;
     }
-    for (int i = 0; i < home_count_[k]; ++i) queue.tasks[i].store(-1, std::memory_order_relaxed);
+    for (int i = 0; i < most; ++i) queue.tasks[i].store(-1, std::memory_order_relaxed);
     queue.taken.store(0, std::memory_order_relaxed);
     queue.listed.store(0, std::memory_order_relaxed);
   }
@@ -210,7 +212,7 @@ void WorkerTeam::run(const TaskGraph& graph, Task task, void* context) {
   graph_ = &graph;
   list_first_tasks();
   begin_stage(graph.task_count(), task, context);
-  for (const int first : first_tasks_) list(first);
+  for (const int first : first_tasks_) list(first, false);
   finish_stage();
 }
 

@@ -7,8 +7,8 @@
 // how long can be set by CLEAVE_LOOK_OUT_US in the environment, where a machine is known to be one's own.
 // OpenMP makes the threads, so its settings apply to them: OMP_PLACES, OMP_PROC_BIND, OMP_STACKSIZE.
 //
-// Every thread has a queue. A task is put into the queue of its home, and a thread whose own is empty takes from the
-// others': the same tasks of stage after stage mostly meet the same core and what it has in its cache.
+// Every thread has two queues, of tasks that others have waited for, which come first, and of tasks that wait for none. A task
+// is put into a queue of its home, and a thread whose own are empty takes from the others': the same tasks of stage after stage mostly meet the same core and what it has in its cache.
 #pragma once
 
 #include <atomic>
@@ -66,7 +66,7 @@ class WorkerTeam {
   void begin_stage(int count, Task task, void* context);
   void finish_stage();
   void list_first_tasks();
-  void list(int task);
+  void list(int task, bool was_waiting);
   void release_next(int task);
   int index_of(Queue& queue);
   bool take_one(int thread);
@@ -84,7 +84,7 @@ class WorkerTeam {
   const TaskGraph* graph_ = nullptr;
   std::exception_ptr failure_;
   std::atomic<bool> failed_{false};
-  std::unique_ptr<Queue[]> queues_;
+  std::unique_ptr<Queue[]> queues_;  // by thread: of tasks that wait for none, then of those that have waited
   int waits_capacity_ = 0;
   std::unique_ptr<std::atomic<int>[]> waits_;  // of a graph: how many tasks each still waits for
   std::vector<int> first_tasks_, home_count_;

@@ -37,10 +37,9 @@ void BranchKernel::request_memory(const PreparedStep& step, ParallelTasks& tasks
   MemoryCount memory;
   matrix_.count(memory);
   separators_.count(memory);
-  assembly_graph_.count(memory);
   substitution_.count(memory);
   for (const FactorTasks* factor : {&local_tasks_, &interface_tasks_}) factor->count(memory);
-  memory.add_grown(stages_.of_body, places_, changed_, factored_);
+  memory.add_grown(stages_.of_body, changed_, factored_);
   memory.add<double>(12, step.groups().size());
   memory.add<double>(6, step.body_count());
   if (step.set().has_blocks()) memory.add<double>(12, step.row_count());
@@ -68,9 +67,6 @@ void BranchKernel::list_tasks(int threads) {
     (branches[b].stage < stages_.first_of_interface ? local : interface).push_back(b);
   local_tasks_.list(symbolic, local);
   interface_tasks_.list(symbolic, interface);
-  places_.clear();
-  for (const Branch& branch : branches) places_.push_back(branch.place);
-  assembly_graph_.build(count, {}, places_);
   substitution_.join(symbolic, threads);
 }
 
@@ -97,12 +93,10 @@ bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
     system_.set(weights);
     find_changed(weights, tasks);
   }
-  tasks.run(Stage::assemble, assembly_graph_, [&](int b) {
-    if (changed_[b]) matrix_.assemble(system_.rows(), b);
-  });
   std::ranges::fill(factored_, 1);
-  local_tasks_.run(Stage::factor_local, matrix_, changed_, factored_, tasks);
-  interface_tasks_.run(Stage::factor_interface, matrix_, changed_, factored_, tasks);
+  const WeightedRows& rows = system_.rows();
+  local_tasks_.run(Stage::factor_local, rows, matrix_, changed_, factored_, tasks);
+  interface_tasks_.run(Stage::factor_interface, rows, matrix_, changed_, factored_, tasks);
   const bool succeeded = std::ranges::find(factored_, 0) == factored_.end();
   changed_all_ = !succeeded || !weights.blocks.empty();
   return succeeded;

@@ -3,7 +3,7 @@
 //
 //     H dv = f_v + J^T D f_r,     dlambda = D (f_r - J dv),
 //
-// dealt out in branches of its elimination tree (block_symbolic.h). Assembly has no order; a branch is factored after its
+// dealt out in branches of its elimination tree (block_symbolic.h). A branch is assembled at any time and factored after its
 // child branches, in tiles where it is large (factor_tasks.h). Substitution is one graph, forward from the leaves
 // to the root and back again, whose tasks are branches joined until they are worth one (branch_groups.h); what is read off rows comes before and after it, in chunks that lie side by side in memory. A kernel
 // only says in what order bodies are eliminated.
@@ -21,7 +21,6 @@
 #include "solver/factor_tasks.h"
 #include "solver/kernels/kernel.h"
 #include "solver/separators.h"
-#include "solver/task_graph.h"
 
 namespace cleave {
 
@@ -67,9 +66,7 @@ class BranchKernel : public Kernel {
   BlockMatrix matrix_;
   int interface_bodies_ = 0;
   FactorTasks local_tasks_, interface_tasks_;
-  TaskGraph assembly_graph_;
   BranchGroups substitution_;
-  std::vector<double> places_;  // scratch
   // The last factorisation failed, is not one of this analysis, or had rows turned by blocks.
   bool changed_all_ = true;
   long factored_preparation_ = 0;         // of the step

@@ -1,4 +1,4 @@
-// Large fronts in tiles: the factor that a front has as a whole, and the same bytes however many threads there are and
+// Assembly and factorisation, large fronts in tiles: the factor that a front has as a whole, and the same bytes however many threads there are and
 // in whatever order tasks that are ready come.
 #include "solver/factor_tasks.h"
 
@@ -34,7 +34,8 @@ class FactorTasksTest : public testing::Test {
   // The flags of all branches.
   std::vector<char> run(ParallelTasks& tasks) {
     std::vector<char> factored(matrix_.branch_count(), 1);
-    factor_.run(Stage::factor_local, matrix_, std::vector<char>(matrix_.branch_count(), 1), factored, tasks);
+    factor_.run(Stage::factor_local, system_.rows(), matrix_, std::vector<char>(matrix_.branch_count(), 1),
+                factored, tasks);
     return factored;
   }
 
@@ -52,12 +53,24 @@ TEST_F(FactorTasksTest, GiveTheFactorOfWholeFronts) {
   const std::vector<double> whole = panels();
   StageClock clock;
   ParallelTasks tasks(clock, 1);
-  matrix_.assemble(system_.rows());
   EXPECT_EQ(std::ranges::count(run(tasks), 0), 0);
-  EXPECT_GT(factor_.task_count(), matrix_.branch_count() + 100);
+  EXPECT_GT(factor_.task_count(), 2 * matrix_.branch_count() + 100);
   const double largest = *std::ranges::max_element(whole);
   const std::vector<double> tiled = panels();
   for (std::size_t k = 0; k < whole.size(); ++k) ASSERT_NEAR(tiled[k], whole[k], 1e-12 * largest) << k;
+}
+
+TEST_F(FactorTasksTest, TellAssemblyApartOnOneThread) {
+  const auto stage_ms = [&](int threads, Stage stage) {
+    StageClock clock(threads);
+    ParallelTasks tasks(clock, threads);
+    clock.start();
+    run(tasks);
+    return clock.stop().stage_ms[static_cast<std::size_t>(stage)];
+  };
+  EXPECT_GT(stage_ms(1, Stage::assemble), 0);
+  EXPECT_GT(stage_ms(1, Stage::factor_local), stage_ms(1, Stage::assemble));
+  EXPECT_EQ(stage_ms(2, Stage::assemble), 0);
 }
 
 TEST_F(FactorTasksTest, GiveTheSameBytesInAnyOrder) {
@@ -67,7 +80,6 @@ TEST_F(FactorTasksTest, GiveTheSameBytesInAnyOrder) {
     for (const std::uint64_t seed : {0, 1, 2, 3}) {
       WorkerTeam::shared(threads).shuffle(seed);
       ParallelTasks tasks(clock, threads);
-      matrix_.assemble(system_.rows());
       EXPECT_EQ(std::ranges::count(run(tasks), 0), 0);
       WorkerTeam::shared(threads).shuffle(0);
       if (first.empty()) first = panels();
@@ -88,11 +100,18 @@ TEST_F(FactorTasksTest, NameTheFrontOfAPivotThatIsNotPositive) {
   });
   ASSERT_NE(tiled, branches.end());
   const Supernode& s = symbolic().supernodes()[tiled->last];
+  // A row that pulls where it should hold, of the front's last body and one that is eliminated later or none.
+  const auto position = [&](int body) {
+    return body < 0 ? symbolic().node_count() : symbolic().position_of_node()[body];
+  };
+  const auto last_body = std::ranges::find_if(step_.groups(), [&](const RowGroup& group) {
+    return std::min(position(group.body_a), position(group.body_b)) == s.first_position + s.width - 1;
+  });
+  ASSERT_NE(last_body, step_.groups().end());
+  d_[last_body->first_row] = -1e12;
+  system_.set({d_, {}});
   for (const int threads : {1, 2}) {
     ParallelTasks tasks(clock, threads);
-    matrix_.assemble(system_.rows());
-    const long ld = 6L * s.row_count;
-    matrix_.cholesky().panels()[s.panel_offset + (6 * s.width - 1) * (ld + 1)] = -1e12;
     const std::vector<char> factored = run(tasks);
     for (int b = 0, bad = static_cast<int>(tiled - branches.begin()); b <= last; ++b) {
       EXPECT_EQ(factored[b], b != bad) << b;
