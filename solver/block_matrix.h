@@ -4,8 +4,8 @@
 // row group straight into the panels of the factor, at positions found by the analysis. Rows of a 3x3 block
 // of D come along its basis (row_weights.h), so that their Gram matrix is one of scalar rows.
 //
-// Branches (block_symbolic.h) let pieces of H be assembled and factored by different threads: assembly of all in any
-// order, then factorisation. A group between bodies of two branches is assembled with the one that is eliminated first
+// Branches (block_symbolic.h) let pieces of H be assembled and factored by different threads: assembly in any
+// order, factorisation of a branch after those below it. A group between bodies of two branches is assembled with the one that is eliminated first
 // and leaves its diagonal block of the other, to be added when that is factored.
 #pragma once
 
@@ -49,7 +49,7 @@ class BlockMatrix {
   // Of a whole step: keeps d (m) of the rows of these groups and sets changed[branch], of the branch that assembles it, where
   // one is another than was kept before.
   void take_weights(std::span<const double> d, const Chunk& groups, std::span<char> changed);
-  // After assembly of all branches and factorisation of the child branches. False when a pivot is not positive.
+  // After assembly of this branch and factorisation of the child branches. False when a pivot is not positive.
   bool factor(int branch);
   // The same of a branch that is one supernode, in pieces; this one begins a strip of columns of its panel, the others are
   // those of cholesky().

@@ -10,7 +10,7 @@ namespace {
 
 // In entries of the factor. A task has at least what takes a core about 4 microseconds on its way up, but on few bodies two
 // threads still get three of them each; with more, the longest way counts more than what it costs to hand a task out: 16 workers would
-// take a seventh longer with tasks of a 48th of the work (modelled, 600 rocks). A supernode takes something besides its entries.
+// take a seventh longer with tasks of 3000 entries than with branches (modelled, 600 rocks). A supernode takes something besides its entries.
 constexpr double kLeastWork = 8000, kTasksPerSquareOfThreads = 1.5, kSupernodeWork = 100;
 
 double work_of(const BlockSymbolic& symbolic, const Branch& branch) {

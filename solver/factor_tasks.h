@@ -23,8 +23,7 @@ class FactorTasks {
   // Of these branches, ascending; what others they wait for is done, assembly included.
   void list(const BlockSymbolic& symbolic, std::span<const int> branches);
   // By branch, of all: changed, 1 where it is to be made anew from the rows, others stand as they are; factored, 1 where a branch
-  // is. Those that meet a pivot that is not positive, and all above them, get 0. On one thread assembly counts as that, on
-  // several as the stage of the factorisation.
+  // is. Those that meet a pivot that is not positive, and all above them, get 0. Assembly counts as Stage::assemble.
   void run(Stage stage, const WeightedRows& rows, BlockMatrix& matrix, std::span<const char> changed,
            std::vector<char>& factored, ParallelTasks& tasks) const;
   int task_count() const { return static_cast<int>(tasks_.size()); }

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -68,25 +69,33 @@ class ParallelTasks {
   // The tasks of a graph, which must stay as it is until the solve has ended.
   template <class Task>
   void run(Stage stage, const TaskGraph& graph, const Task& task) {
-    run(stage, graph, task, stage, [](int) { return false; });
+    StageTimer timer(clock_, stage);
+    if (is_shared()) {
+      team_.run(graph, call<Task>, context_of(task));
+    } else {
+      run_timed(graph.task_count(), task);
+      clock_.add_graph(graph, task_ms_);
+    }
   }
 
-  // The same; on one thread those tasks for which is_other(index) count as another stage.
+  // The same; those tasks for which is_other(index) count as another stage, with their share of the time of all threads.
   template <class Task, class IsOther>
   void run(Stage stage, const TaskGraph& graph, const Task& task, Stage other, const IsOther& is_other) {
+    bool counts = false;
     double other_ms = 0;
     {
       const StageTimer timer(clock_, stage);
-      if (team_.threads() > 1 || team_.shuffles()) {
-        team_.run(graph, call<Task>, context_of(task));
+      counts = timer.counts();
+      if (is_shared()) {
+        other_ms = run_shared(graph, task, is_other);
       } else {
         run_timed(graph.task_count(), task);
-        for (int i = 0; timer.counts() && i < graph.task_count(); ++i)
-          other_ms += is_other(i) ? task_ms_[i] : 0;
+        for (int i = 0; i < graph.task_count(); ++i)
+          if (is_other(i)) other_ms += task_ms_[i];
         clock_.add_graph(graph, task_ms_);
       }
     }
-    if (other_ms > 0) clock_.move(stage, other, other_ms);
+    if (counts) clock_.move(stage, other, other_ms);
   }
 
   StageClock& clock() { return clock_; }
@@ -104,23 +113,50 @@ class ParallelTasks {
     return const_cast<void*>(static_cast<const void*>(&task));
   }
 
+  // How long a tick of the processor's counter takes, by the clock, from when it was made.
+  class TickTimer {
+   public:
+    double ms_per_tick() const {
+      const double ms = std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin_).count();
+      return ms / static_cast<double>(std::max<std::uint64_t>(__rdtsc() - tick_, 1));
+    }
+
+   private:
+    StageClock::Clock::time_point begin_ = StageClock::Clock::now();
+    std::uint64_t tick_ = __rdtsc();
+  };
+
+  bool is_shared() const { return team_.threads() > 1 || team_.shuffles(); }
+
+  template <class Task, class IsOther>
+  double run_shared(const TaskGraph& graph, const Task& task, const IsOther& is_other) {
+    task_ms_.assign(graph.task_count(), 0.0);
+    const auto run_one = [&](int i) {
+      if (!is_other(i)) return task(i);
+      const std::uint64_t tick = __rdtsc();
+      task(i);
+      task_ms_[i] = static_cast<double>(__rdtsc() - tick);
+    };
+    const TickTimer timer;
+    team_.run(graph, call<decltype(run_one)>, context_of(run_one));
+    const double ticks = std::accumulate(task_ms_.begin(), task_ms_.end(), 0.0);
+    return ticks * timer.ms_per_tick() / team_.threads();
+  }
+
   // Tasks of small problems take a fifth of a microsecond, and reading the clock is a tenth of that: between them it is the
   // processor's counter that is read, and its ticks are given out of the time of all of them.
   template <class Task>
   void run_timed(int count, const Task& task) {
     task_ms_.resize(count);
-    const auto begin = StageClock::Clock::now();
-    const std::uint64_t first_tick = __rdtsc();
-    std::uint64_t tick = first_tick;
+    const TickTimer timer;
+    std::uint64_t tick = __rdtsc();
     for (int i = 0; i < count; ++i) {
       task(i);
       const std::uint64_t next = __rdtsc();
       task_ms_[i] = static_cast<double>(next - tick);
       tick = next;
     }
-    const double total_ms =
-        std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin).count();
-    const double ms_per_tick = total_ms / static_cast<double>(std::max<std::uint64_t>(tick - first_tick, 1));
+    const double ms_per_tick = timer.ms_per_tick();
     for (double& ms : task_ms_) ms *= ms_per_tick;
   }
 

@@ -15,8 +15,7 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-// A chunk is a sixteenth of the rows, within limits: 16 workers have one each.
-constexpr int kLeastChunkRows = 384, kMostChunkRows = 512, kChunks = 16, kChunkBodies = 48;
+constexpr int kLeastChunkRows = 384, kMostChunkRows = 512, kChunkBodies = 48;
 
 // Ranges of whole items with at least `least` of what size_of counts, but for the last.
 template <class Size>
@@ -48,8 +47,7 @@ void PreparedStep::prepare(const StepProblem& problem, ParallelTasks* tasks) {
   list_groups();
   list_sides();
   cut_into_chunks(
-      static_cast<int>(groups_.size()),
-      std::clamp((m + kChunks - 1) / kChunks, kLeastChunkRows, kMostChunkRows),
+      static_cast<int>(groups_.size()), rows_of_a_task(m, kLeastChunkRows, kMostChunkRows),
       [&](int g) { return groups_[g].row_count; }, group_chunks_);
   cut_into_chunks(
       n, kChunkBodies, [](int) { return 1; }, body_chunks_);

@@ -2,6 +2,7 @@
 // M^-1, J M^-1, the set of impulses and the diagonal of J M^-1 J^T + C along its axes. Fixed during a solve.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -25,6 +26,11 @@ struct RowGroup {
 struct Chunk {
   int first = 0, last = 0;  // groups, or bodies: first .. last - 1
 };
+
+// A sixteenth of the rows, within limits: 16 workers have a task each.
+constexpr int rows_of_a_task(int rows, int least, int most) {
+  return std::clamp((rows + 15) / 16, least, most);
+}
 
 class PreparedStep {
  public:

@@ -31,7 +31,7 @@ class StageClock {
 
   void start();                                // begins a solve: all zero
   void add(Stage stage, double milliseconds);  // serial or parallel wall time of a stage
-  // Of a solve on one thread: what one stage did in the midst of another.
+  // What one stage did in the midst of another.
   void move(Stage from, Stage to, double milliseconds);
   // Tasks of one parallel stage that has just run (wall times in ms): independent ones, or those of a graph.
   void add_tasks(std::span<const double> task_ms);

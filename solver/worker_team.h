@@ -7,8 +7,9 @@
 // how long can be set by CLEAVE_LOOK_OUT_US in the environment, where a machine is known to be one's own.
 // OpenMP makes the threads, so its settings apply to them: OMP_PLACES, OMP_PROC_BIND, OMP_STACKSIZE.
 //
-// Every thread has two queues, of tasks that others have waited for, which come first, and of tasks that wait for none. A task
-// is put into a queue of its home, and a thread whose own are empty takes from the others': the same tasks of stage after stage mostly meet the same core and what it has in its cache.
+// Every thread has two queues, of tasks that have waited for others, which come first, and of tasks that wait for none. A
+// task is put into a queue of its home, and a thread whose own are empty takes from the others': the same tasks of stage
+// after stage mostly meet the same core and what it has in its cache.
 #pragma once
 
 #include <atomic>

@@ -45,12 +45,12 @@ void InteriorIterate::start_rows(SolveState& state) {
   shift_.begin(cones_.product_count());
 }
 
-// The kernel's analysis, if it is still to be done, needs none of the rows' values.
+// Beside the kernel's analysis, if that is still to be done: it needs none of the rows' values.
 void InteriorIterate::start(SolveState& state) {
   choose_impulses(state);
   state.update_shift();
   if (state.analysis) {
-    state.tasks.run(2, [&](int task) { task == 0 ? state.analyze() : start_rows(state); });
+    state.tasks.run(Stage::analyze, 2, [&](int task) { task == 0 ? state.analyze() : start_rows(state); });
   } else {
     start_rows(state);
   }
