@@ -80,7 +80,8 @@ bool CarriedFactor::pays_to_factor() const {
   return kSolves * iterations * iteration_mflop() > anew_mflop();
 }
 
-bool CarriedFactor::factor(const RowWeights& weights, ParallelTasks& tasks) {
+bool CarriedFactor::factor(const RowWeights& weights, ParallelTasks& tasks, const RowWork& before) {
+  run_work(before, *step_, tasks);
   blocks_.assign(weights.blocks.begin(), weights.blocks.end());
   system_.set({weights.d, blocks_});
   if (!blocks_.empty())
@@ -92,16 +93,23 @@ bool CarriedFactor::factor(const RowWeights& weights, ParallelTasks& tasks) {
 }
 
 void CarriedFactor::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
-                          std::span<double> dlambda, ParallelTasks& tasks) {
-  if (is_own_) return kernel_->solve(f_v, f_r, dv, dlambda, tasks);
+                          std::span<double> dlambda, ParallelTasks& tasks, const RowsAround& around) {
+  if (is_own_) return kernel_->solve(f_v, f_r, dv, dlambda, tasks, around);
   StageTimer timer(tasks.clock(), Stage::solve);
   const auto groups = step_->group_chunks();
   residual_.resize(f_v.size());
-  tasks.run_over(groups, [&](const Chunk& chunk) { system_.weigh(chunk, f_r); });
+  tasks.run_over(groups, [&](const Chunk& chunk) {
+    step_->do_rows(around.before, chunk);
+    system_.weigh(chunk, f_r);
+  });
   tasks.run_over(step_->body_chunks(), [&](const Chunk& chunk) { system_.collect(chunk, f_v, residual_); });
   const int most = kIterationsAnyway + static_cast<int>(anew_mflop() / iteration_mflop());
-  if (!iterate(most, tasks) && factor_anew(tasks)) return kernel_->solve(f_v, f_r, dv, dlambda, tasks);
-  tasks.run_over(groups, [&](const Chunk& chunk) { system_.expand(chunk, x_, f_r, dlambda); });
+  if (!iterate(most, tasks) && factor_anew(tasks))
+    return kernel_->solve(f_v, f_r, dv, dlambda, tasks, {{}, around.after});
+  tasks.run_over(groups, [&](const Chunk& chunk) {
+    system_.expand(chunk, x_, f_r, dlambda);
+    step_->do_rows(around.after, chunk);
+  });
   std::ranges::copy(x_, dv.begin());
 }
 

@@ -44,9 +44,9 @@ class CarriedFactor : public Kernel {
   bool analyzes_as_a_task() const override { return kernel_->analyzes_as_a_task(); }
   // Always true with a factor at hand: new pairs of bodies find their place at the next factorisation.
   bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
-  bool factor(const RowWeights& weights, ParallelTasks& tasks) override;
+  bool factor(const RowWeights& weights, ParallelTasks& tasks, const RowWork& before = {}) override;
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
-             std::span<double> dlambda, ParallelTasks& tasks) override;
+             std::span<double> dlambda, ParallelTasks& tasks, const RowsAround& around = {}) override;
   int interface_unknowns() const override { return kernel_->interface_unknowns(); }
   double local_mflop() const override { return kernel_->local_mflop(); }
   double interface_mflop() const override { return kernel_->interface_mflop(); }

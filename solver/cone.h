@@ -9,22 +9,18 @@
 #include <cmath>
 #include <span>
 
+#include "solver/friction_cone.h"
+
 namespace cleave {
 
-struct FrictionCone {
-  int first_row = 0;  // the normal; tangents follow
-  int row_count = 3;  // 2 or 3
-  double mu = 0;
-  bool coulomb = false;  // whether w_n + mu |w_t| takes the place of w_n
-
-  Eigen::Vector3d load(std::span<const double> x) const {
-    const double* row = x.data() + first_row;
-    return {row[0], row[1], row_count == 3 ? row[2] : 0.0};
-  }
-  void store(const Eigen::Vector3d& value, std::span<double> x) const {
-    for (int k = 0; k < row_count; ++k) x[first_row + k] = value[k];
-  }
-};
+// The three entries of a cone's contact, of x (m) and into it.
+inline Eigen::Vector3d load_contact(const FrictionCone& cone, std::span<const double> x) {
+  const double* row = x.data() + cone.first_row;
+  return {row[0], row[1], cone.row_count == 3 ? row[2] : 0.0};
+}
+inline void store_contact(const FrictionCone& cone, const Eigen::Vector3d& value, std::span<double> x) {
+  for (int k = 0; k < cone.row_count; ++k) x[cone.first_row + k] = value[k];
+}
 
 // |t|. (Not by std::hypot: impulses and velocities are far from where squares overflow, and it takes longer than all the
 // rest.)

@@ -22,7 +22,7 @@
 #include <string_view>
 #include <vector>
 
-#include "solver/cone.h"
+#include "solver/friction_cone.h"
 #include "solver/row_weights.h"
 #include "solver/step_problem.h"
 

@@ -180,11 +180,12 @@ void PreparedStep::jacobian_times(const Chunk& chunk, std::span<const double> v,
 }
 
 void PreparedStep::slack(std::span<const double> v, std::span<const double> impulse,
-                         std::span<double> w) const {
+                         std::span<double> w, const RowWork& after) const {
   run(group_chunks_, [&](const Chunk& chunk) {
     jacobian_times(chunk, v, w);
     const auto [first, last] = rows_of(chunk);
     for (int r = first; r < last; ++r) w[r] += problem_->compliance[r] * impulse[r] - problem_->rhs[r];
+    do_rows(after, chunk);
   });
 }
 

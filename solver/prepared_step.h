@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -26,6 +27,10 @@ struct RowGroup {
 struct Chunk {
   int first = 0, last = 0;  // groups, or bodies: first .. last - 1
 };
+
+// What is done with the rows first .. last - 1 of a chunk of groups, the index of which is the third number. Handed to what
+// passes over the rows anyway, it takes no stage of its own, and finds in the cache what that has read. Empty: nothing.
+using RowWork = std::function<void(int first, int last, int chunk)>;
 
 // A sixteenth of the rows, within limits: 16 workers have a task each.
 constexpr int rows_of_a_task(int rows, int least, int most) {
@@ -53,6 +58,12 @@ class PreparedStep {
     const RowGroup& end = groups_[chunk.last - 1];
     return {groups_[chunk.first].first_row, end.first_row + end.row_count};
   }
+  // work on the rows of one of group_chunks().
+  void do_rows(const RowWork& work, const Chunk& chunk) const {
+    if (!work) return;
+    const auto [first, last] = rows_of(chunk);
+    work(first, last, static_cast<int>(&chunk - group_chunks_.data()));
+  }
   // How often prepare() was called: numbers of J and M stay while this does.
   long preparations() const { return preparations_; }
   // (m, 12) rows of M^-1 J^T, laid out as the Jacobian.
@@ -73,8 +84,9 @@ class PreparedStep {
   void jacobian_times(const Chunk& chunk, std::span<const double> v, std::span<double> out) const;
   // out (n, 6) += J^T x
   void add_jacobian_transpose(std::span<const double> x, std::span<double> out) const;
-  // w (m) = J v + C lambda - b
-  void slack(std::span<const double> v, std::span<const double> impulse, std::span<double> w) const;
+  // w (m) = J v + C lambda - b; after: with the w of a chunk.
+  void slack(std::span<const double> v, std::span<const double> impulse, std::span<double> w,
+             const RowWork& after = {}) const;
   // The quantity the judge measures; impulse and w along the axes of the set.
   double residual(std::span<const double> impulse, std::span<const double> w) const {
     return set_.residual(0, row_count(), diagonal_, impulse, w);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "solver/cone.h"
+
 namespace cleave {
 
 void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,
@@ -33,12 +35,19 @@ void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, Solve
   update_velocity();
 }
 
-void SolveState::update_velocity() {
+void SolveState::update_velocity(const RowWork& after) {
   const std::span<const double> in_rows = step->set().in_rows(impulse, row_impulse);
   step->velocity(in_rows, velocity);
-  step->slack(velocity, in_rows, slack);
+  const bool is_slack_of_rows = step->set().axes().empty() && shift.empty();
+  step->slack(velocity, in_rows, slack, is_slack_of_rows ? after : RowWork());
+  if (is_slack_of_rows) return;
   step->set().to_axes(slack);
   for (std::size_t k = 0; k < shift.size(); ++k) slack[step->set().cones()[k].first_row] += shift[k];
+  run_work(after);
+}
+
+void SolveState::run_work(const RowWork& work) {
+  if (work) tasks.run_over(step->group_chunks(), [&](const Chunk& chunk) { step->do_rows(work, chunk); });
 }
 
 void SolveState::update_shift() {
@@ -46,8 +55,8 @@ void SolveState::update_shift() {
     const FrictionCone& cone = step->set().cones()[k];
     if (!cone.coulomb) continue;
     slack[cone.first_row] -= shift[k];
-    const Eigen::Vector3d w = cone.load(slack);
-    cone.store(shifted_slack(cone.mu, w), slack);
+    const Eigen::Vector3d w = load_contact(cone, slack);
+    store_contact(cone, shifted_slack(cone.mu, w), slack);
     shift[k] = slack[cone.first_row] - w[0];
   }
 }
@@ -69,20 +78,23 @@ void SolveState::analyze() {
   analysis_ms = std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin).count();
 }
 
-bool SolveState::factor() {
+bool SolveState::factor(const RowWork& before) {
   check_stop(options.stop);
   analyze();
   ++summary->factorizations;
-  const bool factored = kernel->factor({weight, blocks}, tasks);
+  const bool factored = kernel->factor({weight, blocks}, tasks, before);
   summary->factor_mflop_done += kernel->done_mflop();
   return factored;
 }
 
-void SolveState::solve() {
+void SolveState::solve(const RowsAround& around) {
   check_stop(options.stop);
+  if (cone_blocks().empty()) return kernel->solve(f_v, f_r, dv, dlambda, tasks, around);
+  run_work(around.before);
   to_basis(cone_blocks(), f_r);
   kernel->solve(f_v, f_r, dv, dlambda, tasks);
   from_basis(cone_blocks(), dlambda);
+  run_work(around.after);
 }
 
 void SolveState::states_from_impulses() {
@@ -112,15 +124,15 @@ bool SolveState::factor_free() {
 
 void SolveState::correct_free() {
   std::fill(f_v.begin(), f_v.end(), 0.0);
-  run_over_rows([&](int first, int last, int) {
+  const auto turn_slack = [this](int first, int last, int) {
     for (int r = first; r < last; ++r) f_r[r] = -slack[r];
-  });
-  solve();
-  run_over_rows([&](int first, int last, int) {
+  };
+  const auto add_increment = [this](int first, int last, int) {
     for (int r = first; r < last; ++r) {
       if (state[r] == RowState::free) impulse[r] += dlambda[r];
     }
-  });
+  };
+  solve({turn_slack, add_increment});
   update_velocity();
 }
 
@@ -152,7 +164,7 @@ double SolveState::residual() {
     const FrictionCone& cone = step->set().cones()[k];
     if (!cone.coulomb) continue;
     law_slack[cone.first_row] -= shift[k];
-    cone.store(shifted_slack(cone.mu, cone.load(law_slack)), law_slack);
+    store_contact(cone, shifted_slack(cone.mu, load_contact(cone, law_slack)), law_slack);
   }
   return greatest_over_ranges([this](int first, int last) {
     return step->set().residual(first, last, step->diagonal(), impulse, law_slack);

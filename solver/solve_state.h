@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "solver/direct_options.h"
@@ -50,23 +51,23 @@ struct SolveState {
   void begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,
              std::span<const double> warm_impulse);
 
-  // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b (plus the shift) from the impulses.
-  void update_velocity();
+  // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b (plus the shift) from the impulses; after: with the w of a chunk.
+  void update_velocity(const RowWork& after = {});
 
   // The same with the shift of these velocities.
   void update_velocity_and_shift();
   // These impulses (m), with their velocities and shift.
   void load(const std::vector<double>& impulses);
 
-  // The kernel's factorisation for the weights; counted. False when it finds a non-positive pivot.
-  bool factor();
+  // The kernel's factorisation for the weights, which `before` may write; counted. False when it finds a non-positive pivot.
+  bool factor(const RowWork& before = {});
 
   // The kernel's analysis, where it is still to be done: a strategy that has other work first may do it beside that, as
   // one of its tasks. factor() does it otherwise.
   void analyze();
 
   // dv and dlambda from f_v and f_r by the kernel; f_r of cones is left along their bases.
-  void solve();
+  void solve(const RowsAround& around = {});
   std::span<WeightBlock> cone_blocks() { return std::span(blocks).last(step->set().cones().size()); }
 
   // Row states read off the impulses: at a bound exactly means bound, everything else free.
@@ -107,12 +108,16 @@ struct SolveState {
   int range_count() const { return (step->row_count() + rows_of_a_range() - 1) / rows_of_a_range(); }
   template <class Task>
   void run_over_rows(const Task& task);
+  // As a pass of its own, where no other is one over the rows as they are here.
+  void run_work(const RowWork& work);
   // The greatest of the values of all rows, at least 0; infinite where one is no number.
   template <class Value>
   double greatest_over_rows(const Value& value_of);
   // Of the rows first .. last - 1.
   template <class Value>
   static double greatest_of(int first, int last, const Value& value_of);
+  // Of these.
+  static double greatest_of(std::span<const double> values);
   // Of the values of whole ranges: value_of(first, last).
   template <class Value>
   double greatest_over_ranges(const Value& value_of);
@@ -162,8 +167,12 @@ template <class Value>
 double SolveState::greatest_over_ranges(const Value& value_of) {
   range_values.assign(range_count(), 0.0);
   run_over_rows([&](int first, int last, int range) { range_values[range] = value_of(first, last); });
+  return greatest_of(range_values);
+}
+
+inline double SolveState::greatest_of(std::span<const double> values) {
   double greatest = 0;
-  for (const double value : range_values) {
+  for (const double value : values) {
     if (!(value <= greatest)) greatest = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
   }
   return greatest;

@@ -72,13 +72,14 @@ void BranchKernel::list_tasks(int threads) {
 
 // With the rows that the weights turn, in one pass. Rows in blocks are turned by their bases too, so that equal weights do not say
 // that nothing has changed.
-void BranchKernel::find_changed(const RowWeights& weights, ParallelTasks& tasks) {
+void BranchKernel::find_changed(const RowWeights& weights, const RowWork& before, ParallelTasks& tasks) {
   const long preparation = step_->preparations();
   const bool is_new = std::exchange(factored_preparation_, preparation) != preparation;
   const bool all =
       std::exchange(changed_all_, true) || is_new;  // true until this factorisation has succeeded
   std::ranges::fill(changed_, all);
   tasks.run_over(step_->group_chunks(), [&](const Chunk& groups) {
+    step_->do_rows(before, groups);
     system_.turn(groups);
     matrix_.take_weights(weights.d, groups, changed_);
   });
@@ -87,11 +88,11 @@ void BranchKernel::find_changed(const RowWeights& weights, ParallelTasks& tasks)
     if (changed_[b] && branches[b].parent >= 0) changed_[branches[b].parent] = 1;
 }
 
-bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
+bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks, const RowWork& before) {
   {
     StageTimer timer(tasks.clock(), Stage::assemble);
     system_.set(weights);
-    find_changed(weights, tasks);
+    find_changed(weights, before, tasks);
   }
   std::ranges::fill(factored_, 1);
   const WeightedRows& rows = system_.rows();
@@ -124,14 +125,20 @@ void BranchKernel::substitute(ParallelTasks& tasks, const Before& before, const 
 
 // Rows go in chunks in the order in which they lie in memory: branch by branch, in the graph, the whole took a tenth longer.
 void BranchKernel::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
-                         std::span<double> dlambda, ParallelTasks& tasks) {
+                         std::span<double> dlambda, ParallelTasks& tasks, const RowsAround& around) {
   StageTimer timer(tasks.clock(), Stage::solve);
   const auto groups = step_->group_chunks();
-  tasks.run_over(groups, [&](const Chunk& chunk) { system_.weigh(chunk, f_r); });
+  tasks.run_over(groups, [&](const Chunk& chunk) {
+    step_->do_rows(around.before, chunk);
+    system_.weigh(chunk, f_r);
+  });
   substitute(
       tasks, [&](int branch) { system_.collect(matrix_.bodies_of(branch), f_v, x_); },
       [&](int branch) { system_.to_bodies(matrix_.bodies_of(branch), x_, dv); });
-  tasks.run_over(groups, [&](const Chunk& chunk) { system_.expand(chunk, x_, f_r, dlambda); });
+  tasks.run_over(groups, [&](const Chunk& chunk) {
+    system_.expand(chunk, x_, f_r, dlambda);
+    step_->do_rows(around.after, chunk);
+  });
 }
 
 void BranchKernel::apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) {

@@ -29,9 +29,9 @@ class BranchKernel : public Kernel {
   void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
   bool analyzes_as_a_task() const override { return true; }
   bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
-  bool factor(const RowWeights& weights, ParallelTasks& tasks) override;
+  bool factor(const RowWeights& weights, ParallelTasks& tasks, const RowWork& before) override;
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
-             std::span<double> dlambda, ParallelTasks& tasks) override;
+             std::span<double> dlambda, ParallelTasks& tasks, const RowsAround& around) override;
   int interface_unknowns() const override { return 6 * interface_bodies_; }
   double local_mflop() const override;
   double interface_mflop() const override;
@@ -54,7 +54,7 @@ class BranchKernel : public Kernel {
  private:
   void bind(const PreparedStep& step);
   void list_tasks(int threads);
-  void find_changed(const RowWeights& weights, ParallelTasks& tasks);
+  void find_changed(const RowWeights& weights, const RowWork& before, ParallelTasks& tasks);
   void request_memory(const PreparedStep& step, ParallelTasks& tasks, bool analyzed);
   template <class Before, class After>
   void substitute(ParallelTasks& tasks, const Before& before, const After& after);

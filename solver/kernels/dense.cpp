@@ -25,7 +25,8 @@ class DenseKernel : public Kernel {
     return true;
   }
 
-  bool factor(const RowWeights& weights, ParallelTasks& tasks) override {
+  bool factor(const RowWeights& weights, ParallelTasks& tasks, const RowWork& before) override {
+    run_work(before, *step_, tasks);
     d_ = Eigen::Map<const Eigen::VectorXd>(weights.d.data(), static_cast<Eigen::Index>(weights.d.size()));
     blocks_ = weights.blocks;
     scalar_d_ = d_;
@@ -43,8 +44,9 @@ class DenseKernel : public Kernel {
   }
 
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
-             std::span<double> dlambda, ParallelTasks& tasks) override {
+             std::span<double> dlambda, ParallelTasks& tasks, const RowsAround& around) override {
     StageTimer timer(tasks.clock(), Stage::solve);
+    run_work(around.before, *step_, tasks);
     const auto size = [](auto s) { return static_cast<Eigen::Index>(s.size()); };
     const Eigen::Map<const Eigen::VectorXd> fv(f_v.data(), size(f_v)), fr(f_r.data(), size(f_r));
     Eigen::Map<Eigen::VectorXd> v(dv.data(), size(dv)), lambda(dlambda.data(), size(dlambda));
@@ -54,6 +56,7 @@ class DenseKernel : public Kernel {
     Eigen::VectorXd row_velocity = jacobian_ * v;
     turn(row_velocity, true);
     lambda = d_.cwiseProduct(fr - row_velocity);
+    run_work(around.after, *step_, tasks);
   }
 
   double local_mflop() const override {

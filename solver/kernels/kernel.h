@@ -19,6 +19,10 @@
 
 namespace cleave {
 
+struct RowsAround {
+  RowWork before, after;
+};
+
 class Kernel {
  public:
   virtual ~Kernel() = default;
@@ -34,14 +38,14 @@ class Kernel {
   // bodies that shares a row has its place in the analysed pattern, whose order is then kept. False: analyze.
   virtual bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) = 0;
 
-  // Numeric factorisation for D, diagonal or with blocks. False when the matrix is not positive definite to
-  // working precision.
-  virtual bool factor(const RowWeights& weights, ParallelTasks& tasks) = 0;
+  // Numeric factorisation for D, diagonal or with blocks; before: writes the weights of a chunk's rows, before they are
+  // read. False when the matrix is not positive definite to working precision.
+  virtual bool factor(const RowWeights& weights, ParallelTasks& tasks, const RowWork& before = {}) = 0;
 
   // Solves with the last factor; f_v (n, 6), f_r (m), dv (n, 6), dlambda (m).
-  // On the rows of a block f_r and dlambda are along its basis.
+  // On the rows of a block f_r and dlambda are along its basis. around: before f_r is read, and after dlambda is written.
   virtual void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
-                     std::span<double> dlambda, ParallelTasks& tasks) = 0;
+                     std::span<double> dlambda, ParallelTasks& tasks, const RowsAround& around = {}) = 0;
 
   virtual int interface_unknowns() const { return 0; }
   // Arithmetic of a factorisation, without padding, in Mflop.
@@ -56,6 +60,12 @@ class Kernel {
   // x (n, 6) = H^-1 f with the H of the last factorisation, of whatever step that was with these bodies.
   virtual void apply_factor(std::span<const double>, std::span<double>, ParallelTasks&) {}
   virtual double apply_mflop() const { return 0; }  // arithmetic of apply_factor
+
+ protected:
+  // Where a kernel has no pass over the rows that the work could be part of.
+  static void run_work(const RowWork& work, const PreparedStep& step, ParallelTasks& tasks) {
+    if (work) tasks.run_over(step.group_chunks(), [&](const Chunk& chunk) { step.do_rows(work, chunk); });
+  }
 };
 
 std::unique_ptr<Kernel> make_dense_kernel(const Settings& settings);

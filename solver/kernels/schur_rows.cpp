@@ -25,9 +25,9 @@ class SchurRowsKernel : public Kernel {
  public:
   void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
   bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) override;
-  bool factor(const RowWeights& weights, ParallelTasks& tasks) override;
+  bool factor(const RowWeights& weights, ParallelTasks& tasks, const RowWork& before) override;
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
-             std::span<double> dlambda, ParallelTasks& tasks) override;
+             std::span<double> dlambda, ParallelTasks& tasks, const RowsAround& around) override;
   int interface_unknowns() const override { return static_cast<int>(split_.cut_rows.size()); }
   double local_mflop() const override;
   double interface_mflop() const override { return interface_.mflop(); }
@@ -118,7 +118,8 @@ bool SchurRowsKernel::rebind(const PreparedStep& step, const Parts& parts, Paral
   return true;
 }
 
-bool SchurRowsKernel::factor(const RowWeights& weights, ParallelTasks& tasks) {
+bool SchurRowsKernel::factor(const RowWeights& weights, ParallelTasks& tasks, const RowWork& before) {
+  run_work(before, *step_, tasks);
   assemble(weights, tasks);
   if (!factor_parts(tasks)) return false;
   form_interface(tasks);
@@ -201,11 +202,13 @@ void SchurRowsKernel::solve_interface(std::span<const double> f_r, std::span<dou
 }
 
 void SchurRowsKernel::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
-                            std::span<double> dlambda, ParallelTasks& tasks) {
+                            std::span<double> dlambda, ParallelTasks& tasks, const RowsAround& around) {
   StageTimer timer(tasks.clock(), Stage::solve);
+  run_work(around.before, *step_, tasks);
   tasks.run(split_.part_count, [&](int i) { parts_[i].reduce(rows_, f_v, f_r); });
   solve_interface(f_r, dlambda);
   tasks.run(split_.part_count, [&](int i) { parts_[i].expand(rows_, lambda_, f_r, dv, dlambda); });
+  run_work(around.after, *step_, tasks);
 }
 
 double SchurRowsKernel::local_mflop() const {

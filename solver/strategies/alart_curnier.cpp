@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/cone.h"
 #include "solver/stop.h"
 
 namespace cleave {

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <numeric>
 
+#include "solver/cone.h"
+
 namespace cleave {
 namespace {
 
@@ -77,8 +79,8 @@ void ConeNewton::linearize_rows(SolveState& state, int first, int last) const {
 void ConeNewton::linearize_cone(SolveState& state, const FrictionCone& cone) {
   const std::ptrdiff_t k = &cone - state.step->set().cones().data();
   const double d = state.step->diagonal()[cone.first_row];
-  const Vector3d impulse = cone.load(impulse_before_), slack = cone.load(slack_before_);
-  const Vector3d compliance = cone.load(state.step->problem().compliance);
+  const Vector3d impulse = load_contact(cone, impulse_before_), slack = load_contact(cone, slack_before_);
+  const Vector3d compliance = load_contact(cone, state.step->problem().compliance);
   const Vector3d apart = cone_residual(cone.mu, d, impulse, slack);
   const Derivative at = differentiate(cone.mu, impulse - slack / d);
   Vector3d wanted = slack, moved = impulse;
@@ -95,8 +97,8 @@ void ConeNewton::linearize_cone(SolveState& state, const FrictionCone& cone) {
       moved -= e.dot(apart) / d * e;
     }
   }
-  cone.store(wanted, wanted_);
-  cone.store(moved, state.impulse);
+  store_contact(cone, wanted, wanted_);
+  store_contact(cone, moved, state.impulse);
 }
 
 // The impulses after a full step. False where the kernel finds a non-positive pivot.

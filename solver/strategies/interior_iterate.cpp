@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace cleave {
 namespace {
@@ -47,6 +48,8 @@ void InteriorIterate::start_rows(SolveState& state) {
 
 // Beside the kernel's analysis, if that is still to be done: it needs none of the rows' values.
 void InteriorIterate::start(SolveState& state) {
+  is_to_be_kept_ = false;
+  row_error_.resize(state.slack.size());
   choose_impulses(state);
   state.update_shift();
   if (state.analysis) {
@@ -54,31 +57,53 @@ void InteriorIterate::start(SolveState& state) {
   } else {
     start_rows(state);
   }
-  state.update_velocity();
+  update_velocity(state);
+  measure(state);
+}
+
+// With the error of intervals, chunk by chunk.
+void InteriorIterate::update_velocity(SolveState& state) {
+  chunk_error_.assign(state.step->group_chunks().size(), 0.0);
+  if (cones_.product_count() > 0) return state.update_velocity();
+  const auto find_error = [&](int first, int last, int chunk) {
+    chunk_error_[chunk] = barrier_.error(state, first, last, row_error_);
+  };
+  state.update_velocity(std::ref(find_error));
+}
+
+void InteriorIterate::measure(SolveState& state) {
+  error_ = cones_.product_count() > 0 ? state.residual_of_cones() : SolveState::greatest_of(chunk_error_);
 }
 
 bool InteriorIterate::factor(SolveState& state, double delta) {
   std::ranges::fill(state.f_v, 0.0);  // in every direction, and an attempt at the end leaves something else
   const StepProblem& problem = state.step->problem();
-  const bool has_cones = cones_.product_count() > 0;
-  state.run_over_rows([&](int first, int last, int) {
+  const auto set_compliance = [&](int first, int last) {
     for (int r = first; r < last; ++r)
       state.weight[r] = std::max(problem.compliance[r], delta * state.step->diagonal()[r]);
-    if (!has_cones) barrier_.weigh(state, first, last);
-  });
-  if (has_cones) {
-    cones_.weigh(state, state.weight);
-    state.run_over_rows([&](int first, int last, int) { barrier_.weigh(state, first, last); });
-  }
-  return state.factor();
+  };
+  const auto weigh = [&](int first, int last, int) { barrier_.weigh(state, first, last); };
+  const auto weigh_all = [&](int first, int last, int chunk) {
+    set_compliance(first, last);
+    weigh(first, last, chunk);
+  };
+  if (cones_.product_count() == 0) return state.factor(std::ref(weigh_all));
+  state.run_over_rows([&](int first, int last, int) { set_compliance(first, last); });
+  cones_.weigh(state, state.weight);
+  return state.factor(std::ref(weigh));
 }
 
 void InteriorIterate::find_direction(SolveState& state, Aim aim) {
-  set_products(state, aim);
-  solve(state);
+  choose_target(aim);
+  const bool second_order = aim == Aim::mehrotra;
+  cones_.aim(state, target_, second_order);
+  const auto set_force = [&](int first, int last, int) {
+    barrier_.aim(state, first, last, target_, second_order);
+  };
+  solve(state, std::ref(set_force));
 }
 
-void InteriorIterate::set_products(SolveState& state, Aim aim) {
+void InteriorIterate::choose_target(Aim aim) {
   const double now = mean_product(0);
   if (aim == Aim::affine) target_ = 0;
   if (aim == Aim::centre) target_ = constants_.centring * now;
@@ -89,8 +114,6 @@ void InteriorIterate::set_products(SolveState& state, Aim aim) {
     for (int power = 0; power < constants_.target_power; ++power) share *= ratio;
     target_ = share * now;
   }
-  barrier_.aim(state, target_, aim == Aim::mehrotra);
-  cones_.aim(state, target_, aim == Aim::mehrotra);
 }
 
 void InteriorIterate::add_cones_to_right_hand_side(SolveState& state) const {
@@ -107,14 +130,18 @@ void InteriorIterate::match_shift(SolveState& state, double tolerance, int most)
     for (std::size_t c = 0; c < wanted_shift_.size(); ++c) wanted_shift_[c] -= state.shift[c];
     const double apart = shift_.improve(wanted_shift_);
     if (apart <= tolerance) break;
-    barrier_.right_hand_side(state);
-    solve(state);
+    solve(state, [&](int first, int last, int) { barrier_.right_hand_side(state, first, last); });
   }
 }
 
-void InteriorIterate::solve(SolveState& state) {
-  add_cones_to_right_hand_side(state);
-  state.solve();
+void InteriorIterate::solve(SolveState& state, const RowWork& set_force) {
+  if (cones_.product_count() > 0) {
+    state.run_work(set_force);
+    add_cones_to_right_hand_side(state);
+    state.solve();
+  } else {
+    state.solve({set_force, {}});
+  }
   course_ = barrier_.follow(state);
   const BarrierCourse of_cones = cones_.follow(state);
   course_.largest_step = std::min(course_.largest_step, of_cones.largest_step);
@@ -122,7 +149,7 @@ void InteriorIterate::solve(SolveState& state) {
 }
 
 double InteriorIterate::rounding(SolveState& state) {
-  barrier_.right_hand_side(state);
+  state.run_over_rows([&](int first, int last, int) { barrier_.right_hand_side(state, first, last); });
   add_cones_to_right_hand_side(state);
   change_.resize(state.velocity.size());
   row_error_.resize(state.impulse.size());
@@ -154,43 +181,50 @@ void InteriorIterate::correct_centrality(SolveState& state) {
     kept_dlambda_.resize(state.dlambda.size());
     kept_dlambda_.swap(state.dlambda);
     kept_course_ = course_;
-    barrier_.correct(state, trial, low, high);
+    barrier_.swap_directions();
     cones_.correct(state, trial, low, high);
-    solve(state);
+    const auto set_force = [&](int first, int last, int) {
+      barrier_.correct(state, first, last, trial, low, high);
+    };
+    solve(state, std::ref(set_force));
     if (course_.largest_step >= step + constants_.least_gain * (trial - step)) continue;
     state.dlambda.swap(kept_dlambda_);
     course_ = kept_course_;
-    barrier_.restore_direction();
+    barrier_.swap_directions();
     cones_.restore_direction();
     return;
   }
 }
 
 void InteriorIterate::advance(SolveState& state, double step) {
-  barrier_.advance(state, step);
-  cones_.advance(state, step);
-  state.update_velocity_and_shift();
-}
-
-double InteriorIterate::error(SolveState& state) {
-  if (cones_.product_count() > 0) return state.residual_of_cones();
-  row_error_.resize(state.slack.size());
-  return barrier_.error(state, row_error_);
-}
-
-void InteriorIterate::keep(SolveState& state) {
   kept_impulse_.resize(state.impulse.size());
   state.run_over_rows([&](int first, int last, int) {
-    std::copy(state.impulse.begin() + first, state.impulse.begin() + last, kept_impulse_.begin() + first);
-    barrier_.keep(first, last);
+    if (is_to_be_kept_) {
+      std::copy(state.impulse.begin() + first, state.impulse.begin() + last, kept_impulse_.begin() + first);
+      barrier_.keep(first, last);
+    }
+    barrier_.advance(state, first, last, step);
   });
+  is_to_be_kept_ = false;
+  cones_.advance(state, step);
+  update_velocity(state);
+  state.update_shift();
+  measure(state);
+}
+
+void InteriorIterate::keep() {
+  is_to_be_kept_ = true;
   cones_.keep();
 }
 
 void InteriorIterate::restore(SolveState& state) {
+  if (is_to_be_kept_) return;  // no step since
   barrier_.restore();
   cones_.restore();
-  load_kept_impulses(state);
+  state.impulse = kept_impulse_;
+  update_velocity(state);
+  state.update_shift();
+  measure(state);
 }
 
 }  // namespace cleave

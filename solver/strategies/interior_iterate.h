@@ -58,24 +58,26 @@ class InteriorIterate {
   void advance(SolveState& state, double step);
 
   // The largest violation of the conditions as a velocity (m/s): of the equation in w, and min(d s, z). With cones the
-  // residual, because their s and z may round more than the impulses do.
-  double error(SolveState& state);
+  // residual, because their s and z may round more than the impulses do. Of the last start, advance or restore.
+  double error() const { return error_; }
 
   // A row is at a bound where the multiplier outweighs the slack, else free.
   void read_active_set(SolveState& state) const { barrier_.read_active_set(state); }
 
-  // One iterate, to come back to.
-  void keep(SolveState& state);
+  // One iterate, to come back to; what is kept of intervals is copied as the next step changes it.
+  void keep();
   void restore(SolveState& state);
-  // Its impulses alone, with their velocities.
+  // Its impulses alone, with their velocities; some steps after it was kept.
   void load_kept_impulses(SolveState& state) const { state.load(kept_impulse_); }
 
  private:
   void choose_impulses(SolveState& state);
   void start_rows(SolveState& state);
-  void set_products(SolveState& state, Aim aim);
+  void choose_target(Aim aim);
   void add_cones_to_right_hand_side(SolveState& state) const;
-  void solve(SolveState& state);  // with the part of the bounds in state.f_r
+  void solve(SolveState& state, const RowWork& set_force);  // which sets the part of the bounds in state.f_r
+  void update_velocity(SolveState& state);
+  void measure(SolveState& state);
 
   InteriorConstants constants_;
   IntervalBarrier barrier_;
@@ -83,8 +85,10 @@ class InteriorIterate {
   CoulombShift shift_;
   BarrierCourse course_, kept_course_;  // of the direction
   double target_ = 0;                   // product that Mehrotra's direction aims at
+  double error_ = 0;
+  bool is_to_be_kept_ = false;
   std::vector<double> kept_impulse_, kept_dlambda_;
-  std::vector<double> row_speed_, row_error_;
+  std::vector<double> row_speed_, row_error_, chunk_error_;
   std::vector<double> change_;        // (n, 6) M^-1 J^T dlambda
   std::vector<double> wanted_shift_;  // (cones)
 };

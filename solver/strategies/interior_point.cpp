@@ -46,7 +46,7 @@ class InteriorPoint : public Strategy {
  private:
   enum class Progress { good, finished, rounding };
   void begin(SolveState& state);
-  Progress watch(SolveState& state, double error);
+  Progress watch(const SolveState& state, double error);
   bool is_stalled() const;
   bool is_hopeless() const { return has_coulomb_ && since_best_ >= kHopelessIterations; }
   bool finish(SolveState& state);
@@ -107,14 +107,14 @@ void InteriorPoint::step(SolveState& state, double error) {
 // Keeps the best iterate. Finished: within the limit, and no better for a while. Rounding: full steps, but a
 // growing error. The error of cones does not see that the start is inside them where the impulses are not: impulses of the step
 // before may be better than the first iterates, which are none the worse for it.
-InteriorPoint::Progress InteriorPoint::watch(SolveState& state, double error) {
+InteriorPoint::Progress InteriorPoint::watch(const SolveState& state, double error) {
   const bool is_start = std::exchange(is_start_, false);
   if (error < best_error_) {
     best_error_ = error;
     best_is_start_ = is_start && !state.step->set().cones().empty();
     best_delta_ = delta_;
     since_best_ = grown_ = 0;
-    iterate_.keep(state);
+    iterate_.keep();
     return Progress::good;
   }
   ++since_best_;
@@ -153,7 +153,7 @@ bool InteriorPoint::run(SolveState& state) {
   iterate_.start(state);
   const double target = state.options.target_m_per_s * state.step->velocity_scale();
   for (int k = 0; k < state.options.max_iterations; ++k) {
-    double error = iterate_.error(state);
+    double error = iterate_.error();
     const Progress progress = watch(state, error);
     if (progress == Progress::finished || is_hopeless()) break;
     if (progress == Progress::rounding) {

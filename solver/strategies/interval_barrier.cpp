@@ -105,22 +105,15 @@ void IntervalBarrier::Side::add_force(int first, int last, std::span<double> f_r
   for (int r = first; r < last; ++r) f_r[r] += sign * (z[r] + (now.c[r] - z[r] * gap[r]) * inverse_s[r]);
 }
 
-void IntervalBarrier::set_force(SolveState& state, int first, int last) const {
+void IntervalBarrier::right_hand_side(SolveState& state, int first, int last) const {
 #pragma omp simd
   for (int r = first; r < last; ++r) state.f_r[r] = -moves_[r] * state.slack[r];
   for (const Side& side : sides()) side.add_force(first, last, state.f_r);
 }
 
-void IntervalBarrier::aim(SolveState& state, double product, bool second_order) {
-  const double share = second_order ? 1.0 : 0.0;
-  state.run_over_rows([&](int first, int last, int) {
-    for (Side& side : sides()) side.aim(first, last, product, share);
-    set_force(state, first, last);
-  });
-}
-
-void IntervalBarrier::right_hand_side(SolveState& state) const {
-  state.run_over_rows([&](int first, int last, int) { set_force(state, first, last); });
+void IntervalBarrier::aim(SolveState& state, int first, int last, double product, bool second_order) {
+  for (Side& side : sides()) side.aim(first, last, product, second_order ? 1.0 : 0.0);
+  right_hand_side(state, first, last);
 }
 
 void IntervalBarrier::Side::follow(int first, int last, std::span<const double> dlambda,
@@ -165,30 +158,25 @@ void IntervalBarrier::Side::correct(int first, int last, double trial, double lo
   }
 }
 
-void IntervalBarrier::correct(SolveState& state, double trial, double low, double high) {
-  for (Side& side : sides_) std::swap(side.now, side.before);
-  state.run_over_rows([&](int first, int last, int) {
-    for (Side& side : sides()) side.correct(first, last, trial, low, high);
-    set_force(state, first, last);
-  });
+void IntervalBarrier::correct(SolveState& state, int first, int last, double trial, double low, double high) {
+  for (Side& side : sides()) side.correct(first, last, trial, low, high);
+  right_hand_side(state, first, last);
 }
 
-void IntervalBarrier::restore_direction() {
+void IntervalBarrier::swap_directions() {
   for (Side& side : sides_) std::swap(side.now, side.before);
 }
 
-void IntervalBarrier::advance(SolveState& state, double step) {
-  state.run_over_rows([&](int first, int last, int) {
+void IntervalBarrier::advance(SolveState& state, int first, int last, double step) {
 #pragma omp simd
-    for (int r = first; r < last; ++r) state.impulse[r] += step * moves_[r] * state.dlambda[r];
-    for (Side& side : sides()) {
+  for (int r = first; r < last; ++r) state.impulse[r] += step * moves_[r] * state.dlambda[r];
+  for (Side& side : sides()) {
 #pragma omp simd
-      for (int r = first; r < last; ++r) {
-        side.s[r] += step * side.now.ds[r];
-        side.z[r] += step * side.now.dz[r];
-      }
+    for (int r = first; r < last; ++r) {
+      side.s[r] += step * side.now.ds[r];
+      side.z[r] += step * side.now.dz[r];
     }
-  });
+  }
 }
 
 double IntervalBarrier::Side::error(int first, int last, std::span<const double> d,
@@ -202,15 +190,13 @@ double IntervalBarrier::Side::error(int first, int last, std::span<const double>
   return worst;
 }
 
-double IntervalBarrier::error(SolveState& state, std::span<double> row_error) {
-  return state.greatest_over_ranges([&](int first, int last) {
+double IntervalBarrier::error(const SolveState& state, int first, int last, std::span<double> row_error) const {
 #pragma omp simd
-    for (int r = first; r < last; ++r) row_error[r] = moves_[r] * state.slack[r];
-    double worst = 0;
-    for (const Side& side : sides())
-      worst = std::max(worst, side.error(first, last, state.step->diagonal(), row_error));
-    return std::max(worst, state.greatest_of(first, last, [&](int r) { return std::abs(row_error[r]); }));
-  });
+  for (int r = first; r < last; ++r) row_error[r] = moves_[r] * state.slack[r];
+  double worst = 0;
+  for (const Side& side : sides())
+    worst = std::max(worst, side.error(first, last, state.step->diagonal(), row_error));
+  return std::max(worst, state.greatest_of(first, last, [&](int r) { return std::abs(row_error[r]); }));
 }
 
 void IntervalBarrier::read_active_set(SolveState& state) const {

@@ -15,8 +15,7 @@
 //     D_r = 1 / (C_r + sum z / s),   f_r = -w + sum sigma (z + (c - z gap) / s).
 //
 // Lower and upper bounds are a side each, with a place for every row, so that loops over them are vector instructions without
-// gathering. Where a row has no such bound its place holds s = 1 and zeros, which add nothing. Loops are dealt out in the
-// ranges of SolveState::run_over_rows.
+// gathering. Where a row has no such bound its place holds s = 1 and zeros, which add nothing. Who calls deals out the rows.
 //
 // Rows whose bounds coincide are fixed, with D = 0.
 #pragma once
@@ -54,19 +53,20 @@ class IntervalBarrier {
   // gap for the directions that follow.
   void weigh(SolveState& state, int first, int last);
 
-  // Products s z that the direction aims at, less the second-order term of the last direction or not, and state.f_r for it.
-  void aim(SolveState& state, double product, bool second_order);
-  void right_hand_side(SolveState& state) const;  // state.f_r anew
-  BarrierCourse follow(SolveState& state);        // ds and dz from state.dlambda; returns where they lead
+  // Of these rows: products s z that the direction aims at, less the second-order term of the last direction or not, and
+  // state.f_r for it.
+  void aim(SolveState& state, int first, int last, double product, bool second_order);
+  void right_hand_side(SolveState& state, int first, int last) const;  // state.f_r anew
+  BarrierCourse follow(SolveState& state);  // ds and dz from state.dlambda; returns where they lead
 
-  // Aims products that a step of `trial` would leave outside of [low, high] back at it, with state.f_r; restore_direction
-  // brings back the direction from before.
-  void correct(SolveState& state, double trial, double low, double high);
-  void restore_direction();
+  // After swap_directions, of these rows: aims products that a step of `trial` would leave outside of [low, high] back at it,
+  // with state.f_r.
+  void correct(SolveState& state, int first, int last, double trial, double low, double high);
+  void swap_directions();  // with the direction from before
 
-  void advance(SolveState& state, double step);  // impulses, slacks and multipliers
-  // The largest of min(d s, z) and of what is left of the equation in w, m/s; row_error (m): scratch.
-  double error(SolveState& state, std::span<double> row_error);
+  void advance(SolveState& state, int first, int last, double step);  // impulses, slacks and multipliers
+  // Of these rows, the largest of min(d s, z) and of what is left of the equation in w, m/s; row_error (m): scratch.
+  double error(const SolveState& state, int first, int last, std::span<double> row_error) const;
 
   // A row is at a bound where the multiplier outweighs the slack, else free.
   void read_active_set(SolveState& state) const;
@@ -106,7 +106,6 @@ class IntervalBarrier {
   enum class RowUse : std::uint8_t { bounded, fixed, of_cone };
 
   void add_bounds(SolveState& state, int row, double speed);
-  void set_force(SolveState& state, int first, int last) const;
   // None where no row has a bound.
   std::span<Side> sides() { return std::span(sides_).first(bounds_ > 0 ? 2 : 0); }
   std::span<const Side> sides() const { return std::span(sides_).first(bounds_ > 0 ? 2 : 0); }

@@ -1,5 +1,6 @@
 #include "solver/strategies/step_shift.h"
 
+#include "solver/cone.h"
 #include "solver/group_products.h"
 
 namespace cleave {
@@ -17,7 +18,7 @@ StepShift::Contact StepShift::linearize(const SolveState& state, const FrictionC
                                         std::span<const double> slack_before) {
   Contact contact;
   const StepProblem& problem = state.step->problem();
-  const Vector3d before = cone.load(slack_before), moved = cone.load(state.slack) - before;
+  const Vector3d before = load_contact(cone, slack_before), moved = load_contact(cone, state.slack) - before;
   const double t = tangential(before);
   if (!cone.coulomb || !(t > 0)) return contact;
   for (int k = 1; k < cone.row_count; ++k) {
@@ -55,7 +56,7 @@ bool StepShift::is_matched(SolveState& state) {
     for (const FrictionCone& cone : state.step->set().cones_of(first, last)) {
       const Contact& contact = contacts_[&cone - cones.data()];
       const int a = body[2L * cone.first_row], b = body[2L * cone.first_row + 1];
-      const Vector3d dlambda = cone.load(state.dlambda);
+      const Vector3d dlambda = load_contact(cone, state.dlambda);
       const BodyPair both = load_pair(dv + 6L * a, b < 0 ? nullptr : dv + 6L * b);
       wanted_[&cone - cones.data()] = contact.change + row_times(contact.row, both) +
                                       contact.compliance[0] * dlambda[1] + contact.compliance[1] * dlambda[2];

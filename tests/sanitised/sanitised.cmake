@@ -1,5 +1,5 @@
 # What a build with sanitisers (presets asan and tsan) does otherwise with the tests; see README.md of this folder.
-# Sets TEST_FILTER (of GoogleTest) and TEST_PROPERTIES of all tests. The second variable of their environment is a
+# Sets TEST_FILTER (of GoogleTest), TEST_PROPERTIES of all tests and, for asan, TEST_SHARDS. The second variable of their environment is a
 # property of its own, because gtest_discover_tests takes lists apart.
 
 # A finding ends the program, with a code that no test expects of a program that it starts.
@@ -15,6 +15,8 @@ if(CLEAVE_SANITIZE MATCHES "thread")
   set_source_files_properties(solver/allocation_counter.cpp PROPERTIES COMPILE_DEFINITIONS CLEAVE_THREAD_SANITISER)
 else()
   set(PRESET asan)
+  # A program with this sanitiser takes a fifth of a second to begin, which is longer than most tests.
+  set(TEST_SHARDS 12)
   set(TEST_PROPERTIES ENVIRONMENT_MODIFICATION "UBSAN_OPTIONS=set:exitcode=66:print_stacktrace=1" ENVIRONMENT
       "ASAN_OPTIONS=exitcode=66:detect_stack_use_after_return=1:check_initialization_order=1:allocator_may_return_null=1")
 endif()
@@ -24,6 +26,17 @@ set(TEST_COMPILE_OPTIONS -g0)
 if(CLEAVE_SANITIZE MATCHES "undefined")
   list(APPEND TEST_COMPILE_OPTIONS -fno-sanitize=undefined,float-cast-overflow)
 endif()
+
+# sanitised_shards(ROOM): the tests of a room, every TEST_SHARDS-th in one process.
+function(sanitised_shards ROOM)
+  foreach(SHARD RANGE 1 ${TEST_SHARDS})
+    set(NAME ${ROOM}/${SHARD}_of_${TEST_SHARDS})
+    math(EXPR INDEX "${SHARD} - 1")
+    add_test(NAME ${NAME} COMMAND ${ROOM}_tests --gtest_filter=${TEST_FILTER})
+    set_tests_properties(${NAME} PROPERTIES TIMEOUT 1800 ${TEST_PROPERTIES})
+    set_property(TEST ${NAME} APPEND PROPERTY ENVIRONMENT GTEST_TOTAL_SHARDS=${TEST_SHARDS} GTEST_SHARD_INDEX=${INDEX})
+  endforeach()
+endfunction()
 
 # Planted faults show that the sanitisers are there and that a finding fails.
 add_executable(sanitised_tests ${CMAKE_CURRENT_LIST_DIR}/${PRESET}_faults_test.cpp)

@@ -193,7 +193,8 @@ class TestScriptTest(StandInTest):
     def test_a_skipped_test_fails_in_ci_only(self):
         passed = "100% tests passed, 0 tests failed out of 2\n"
         for output, full_log in (("1/2 Test #1: a ...***Skipped   0.01 sec\n" + passed, ""),
-                                 ("2/2 Test #2: scripts ...   Passed\n" + passed, "OK (skipped=1)\n")):
+                                 ("2/2 Test #2: scripts ...   Passed\n" + passed, "OK (skipped=1)\n"),
+                                 ("2/2 Test #2: solver/1_of_12 ...   Passed\n" + passed, "[  SKIPPED ] A.Test (0 ms)\n")):
             self.ctest(output, full_log)
             self.assertEqual(self.run_program(self.root / "scripts" / "test").returncode, 0)
             for command, variables in (("scripts/test", {"CI": "true"}), (".ci/run", {})):

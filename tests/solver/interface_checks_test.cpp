@@ -93,10 +93,11 @@ class SpoiltKernel : public KernelWrapper {
   SpoiltKernel(std::unique_ptr<Kernel> true_kernel, int row, int body, double off)
       : KernelWrapper(std::move(true_kernel)), row_(row), body_(body), off_(off) {}
   void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
-             std::span<double> dlambda, ParallelTasks& tasks) override {
-    KernelWrapper::solve(f_v, f_r, dv, dlambda, tasks);
+             std::span<double> dlambda, ParallelTasks& tasks, const RowsAround& around) override {
+    KernelWrapper::solve(f_v, f_r, dv, dlambda, tasks, {around.before, {}});
     dlambda[row_] += off_;
     dv[6 * body_] += off_;
+    run_work(around.after, *step_, tasks);
   }
 
  private:

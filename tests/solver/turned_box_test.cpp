@@ -127,7 +127,7 @@ TEST_P(TurnedBoxTest, DirectionsSolveTheirOwnSystem) {
   iterate.start(state);
   ASSERT_TRUE(iterate.factor(state, kFactoredCompliance));
   iterate.find_direction(state, InteriorIterate::Aim::affine);
-  EXPECT_GT(iterate.error(state), 1e-3);
+  EXPECT_GT(iterate.error(), 1e-3);
   EXPECT_LE(iterate.rounding(state), 1e-10);
 }
 
