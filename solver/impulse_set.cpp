@@ -86,7 +86,8 @@ void ImpulseSet::project(std::span<double> impulse) const {
       impulse[r] = std::clamp(impulse[r], problem_->lower[r], problem_->upper[r]);
     }
   });
-  for (const FrictionCone& cone : cones_) store_contact(cone, project_on_cone(load_contact(cone, impulse), cone.mu), impulse);
+  for (const FrictionCone& cone : cones_)
+    store_contact(cone, project_on_cone(load_contact(cone, impulse), cone.mu), impulse);
 }
 
 double ImpulseSet::residual(int first, int last, std::span<const double> d, std::span<const double> impulse,

@@ -47,7 +47,7 @@ void PreparedStep::prepare(const StepProblem& problem, ParallelTasks* tasks) {
   list_groups();
   list_sides();
   cut_into_chunks(
-      static_cast<int>(groups_.size()), rows_of_a_task(m, kLeastChunkRows, kMostChunkRows),
+      static_cast<int>(groups_.size()), std::clamp((m + 15) / 16, kLeastChunkRows, kMostChunkRows),
       [&](int g) { return groups_[g].row_count; }, group_chunks_);
   cut_into_chunks(
       n, kChunkBodies, [](int) { return 1; }, body_chunks_);
@@ -179,8 +179,8 @@ void PreparedStep::jacobian_times(const Chunk& chunk, std::span<const double> v,
   }
 }
 
-void PreparedStep::slack(std::span<const double> v, std::span<const double> impulse,
-                         std::span<double> w, const RowWork& after) const {
+void PreparedStep::slack(std::span<const double> v, std::span<const double> impulse, std::span<double> w,
+                         const RowWork& after) const {
   run(group_chunks_, [&](const Chunk& chunk) {
     jacobian_times(chunk, v, w);
     const auto [first, last] = rows_of(chunk);

@@ -2,7 +2,6 @@
 // M^-1, J M^-1, the set of impulses and the diagonal of J M^-1 J^T + C along its axes. Fixed during a solve.
 #pragma once
 
-#include <algorithm>
 #include <functional>
 #include <span>
 #include <utility>
@@ -23,7 +22,7 @@ struct RowGroup {
 };
 
 // Rows and bodies that one task works on: about as many rows or bodies as take some microseconds. Chunks depend on the
-// problem alone.
+// problem alone. Of rows it is a sixteenth, within limits, so that 16 workers have one each.
 struct Chunk {
   int first = 0, last = 0;  // groups, or bodies: first .. last - 1
 };
@@ -31,11 +30,6 @@ struct Chunk {
 // What is done with the rows first .. last - 1 of a chunk of groups, the index of which is the third number. Handed to what
 // passes over the rows anyway, it takes no stage of its own, and finds in the cache what that has read. Empty: nothing.
 using RowWork = std::function<void(int first, int last, int chunk)>;
-
-// A sixteenth of the rows, within limits: 16 workers have a task each.
-constexpr int rows_of_a_task(int rows, int least, int most) {
-  return std::clamp((rows + 15) / 16, least, most);
-}
 
 class PreparedStep {
  public:

@@ -43,11 +43,7 @@ void SolveState::update_velocity(const RowWork& after) {
   if (is_slack_of_rows) return;
   step->set().to_axes(slack);
   for (std::size_t k = 0; k < shift.size(); ++k) slack[step->set().cones()[k].first_row] += shift[k];
-  run_work(after);
-}
-
-void SolveState::run_work(const RowWork& work) {
-  if (work) tasks.run_over(step->group_chunks(), [&](const Chunk& chunk) { step->do_rows(work, chunk); });
+  if (after) run_over_rows(after);
 }
 
 void SolveState::update_shift() {
@@ -90,11 +86,11 @@ bool SolveState::factor(const RowWork& before) {
 void SolveState::solve(const RowsAround& around) {
   check_stop(options.stop);
   if (cone_blocks().empty()) return kernel->solve(f_v, f_r, dv, dlambda, tasks, around);
-  run_work(around.before);
+  if (around.before) run_over_rows(around.before);
   to_basis(cone_blocks(), f_r);
   kernel->solve(f_v, f_r, dv, dlambda, tasks);
   from_basis(cone_blocks(), dlambda);
-  run_work(around.after);
+  if (around.after) run_over_rows(around.after);
 }
 
 void SolveState::states_from_impulses() {
@@ -152,7 +148,7 @@ double SolveState::refine_free(double target, int most_steps, bool count) {
 }
 
 double SolveState::residual_of_cones() {
-  return greatest_over_ranges([this](int first, int last) {
+  return greatest_over_chunks([this](int first, int last, int) {
     return step->set().residual(first, last, step->diagonal(), impulse, slack);
   });
 }
@@ -166,7 +162,7 @@ double SolveState::residual() {
     law_slack[cone.first_row] -= shift[k];
     store_contact(cone, shifted_slack(cone.mu, load_contact(cone, law_slack)), law_slack);
   }
-  return greatest_over_ranges([this](int first, int last) {
+  return greatest_over_chunks([this](int first, int last, int) {
     return step->set().residual(first, last, step->diagonal(), impulse, law_slack);
   });
 }

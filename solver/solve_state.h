@@ -96,20 +96,13 @@ struct SolveState {
   // Moves one violated row to the state its violation asks for.
   void flip(int row);
 
-  // Light work on rows in ranges that depend on their number alone, one task each: task(first, last, range). Few rows are
-  // one range: to hand out a part of them would take longer than to do it. On five steps of 200 rocks two threads took from
-  // 14 % less to 7 % more time with ranges of 384 rows than with one of all rows, 4 % less in the median. Of 600 rocks a sixteenth
-  // is a range: 16 workers would take 5 to 10 % less with a twelfth than with a sixth (modelled, two steps, cfm 1e-10), and 2 % less again.
-  static constexpr int kFewRows = 1024, kLeastRowsOfARange = 384, kMostRowsOfARange = 1024;
-  int rows_of_a_range() const {
-    const int rows = step->row_count();
-    return rows <= kFewRows ? kFewRows : rows_of_a_task(rows, kLeastRowsOfARange, kMostRowsOfARange);
-  }
-  int range_count() const { return (step->row_count() + rows_of_a_range() - 1) / rows_of_a_range(); }
+  // Light work on rows as a pass of its own, a task for every chunk: task(first, last, chunk). Few rows are one task: to hand
+  // out a part of them would take longer than to do it. On five steps of 200 rocks two threads took from 14 % less to 7 % more
+  // time with chunks of 384 rows than with one of all rows, 4 % less in the median.
+  static constexpr int kFewRows = 1024;
+  std::size_t chunk_count() const { return step->group_chunks().size(); }
   template <class Task>
   void run_over_rows(const Task& task);
-  // As a pass of its own, where no other is one over the rows as they are here.
-  void run_work(const RowWork& work);
   // The greatest of the values of all rows, at least 0; infinite where one is no number.
   template <class Value>
   double greatest_over_rows(const Value& value_of);
@@ -118,9 +111,9 @@ struct SolveState {
   static double greatest_of(int first, int last, const Value& value_of);
   // Of these.
   static double greatest_of(std::span<const double> values);
-  // Of the values of whole ranges: value_of(first, last).
+  // Of the values of whole chunks: value_of(first, last, chunk).
   template <class Value>
-  double greatest_over_ranges(const Value& value_of);
+  double greatest_over_chunks(const Value& value_of);
 
   // The quantity the judge measures; infinite where it is no number.
   double residual();
@@ -150,24 +143,27 @@ struct SolveState {
   std::vector<double> row_impulse;  // (m) scratch: impulses in rows where a box is turned
   std::vector<double> law_slack;    // (m) scratch: slacks with the shift of the present velocities
   // Scratch: of greatest_over_rows and find_violations.
-  std::vector<double> range_values;
+  std::vector<double> chunk_values;
   std::vector<char> row_is_violated;
   std::span<const int> part_of_body;  // (n) of the solve, for strategies that look at the cut
 };
 
 template <class Task>
 void SolveState::run_over_rows(const Task& task) {
-  tasks.run(range_count(), [&](int range) {
-    const int first = range * rows_of_a_range();
-    task(first, std::min(first + rows_of_a_range(), step->row_count()), range);
-  });
+  const auto chunks = step->group_chunks();
+  const auto run_one = [&](const Chunk& chunk) {
+    const auto [first, last] = step->rows_of(chunk);
+    task(first, last, static_cast<int>(&chunk - chunks.data()));
+  };
+  if (step->row_count() > kFewRows) return tasks.run_over(chunks, run_one);
+  for (const Chunk& chunk : chunks) run_one(chunk);
 }
 
 template <class Value>
-double SolveState::greatest_over_ranges(const Value& value_of) {
-  range_values.assign(range_count(), 0.0);
-  run_over_rows([&](int first, int last, int range) { range_values[range] = value_of(first, last); });
-  return greatest_of(range_values);
+double SolveState::greatest_over_chunks(const Value& value_of) {
+  chunk_values.assign(chunk_count(), 0.0);
+  run_over_rows([&](int first, int last, int chunk) { chunk_values[chunk] = value_of(first, last, chunk); });
+  return greatest_of(chunk_values);
 }
 
 inline double SolveState::greatest_of(std::span<const double> values) {
@@ -191,7 +187,7 @@ double SolveState::greatest_of(int first, int last, const Value& value_of) {
 
 template <class Value>
 double SolveState::greatest_over_rows(const Value& value_of) {
-  return greatest_over_ranges([&](int first, int last) { return greatest_of(first, last, value_of); });
+  return greatest_over_chunks([&](int first, int last, int) { return greatest_of(first, last, value_of); });
 }
 
 }  // namespace cleave

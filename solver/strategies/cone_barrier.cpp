@@ -31,12 +31,12 @@ void store_basis(const LaneWeights& weights, int lane, double* basis) {
 
 }  // namespace
 
-// task(contacts, k, range) for all contacts, four at a time, in the ranges of their normal rows.
+// task(contacts, k, chunk) for all contacts, four at a time, in the chunks of their rows.
 template <class Task>
 void ConeBarrier::run_over_contacts(SolveState& state, const Task& task) const {
   if (contacts_.empty()) return;
-  state.run_over_rows([&](int, int, int range) {
-    for (int k = contacts_first_[range]; k < contacts_first_[range + 1]; ++k) task(contacts_[k], k, range);
+  state.run_over_rows([&](int, int, int chunk) {
+    for (int k = contacts_first_[chunk]; k < contacts_first_[chunk + 1]; ++k) task(contacts_[k], k, chunk);
   });
 }
 
@@ -44,10 +44,10 @@ void ConeBarrier::list_contacts(const SolveState& state) {
   const ImpulseSet& set = state.step->set();
   contacts_.clear();
   contacts_first_.clear();
-  for (int range = 0; range < state.range_count(); ++range) {
+  for (const Chunk& chunk : state.step->group_chunks()) {
     contacts_first_.push_back(static_cast<int>(contacts_.size()));
-    const int first_row = range * state.rows_of_a_range();
-    auto cones = set.cones_of(first_row, first_row + state.rows_of_a_range());
+    const auto [first, last] = state.step->rows_of(chunk);
+    auto cones = set.cones_of(first, last);
     for (; !cones.empty(); cones = cones.subspan(contacts_.back().count)) contacts_.emplace_back(cones);
   }
   contacts_first_.push_back(static_cast<int>(contacts_.size()));
@@ -117,14 +117,14 @@ void ConeBarrier::add_to_right_hand_side(SolveState& state) const {
 }
 
 BarrierCourse ConeBarrier::follow(SolveState& state) {
-  courses_.assign(state.range_count(), BarrierCourse{});
-  run_over_contacts(state, [&](const ContactLanes& four, int k, int range) {
+  courses_.assign(state.chunk_count(), BarrierCourse{});
+  run_over_contacts(state, [&](const ContactLanes& four, int k, int chunk) {
     const Point& point = point_[k];
     Direction& now = now_[k];
     now.ds = transposed_times(point.w_inverse, to_second_order(four.mu, four.load(state.dlambda))) +
              scaled_gap_[k];
     now.dz = now.q - now.ds;
-    BarrierCourse& course = courses_[range];
+    BarrierCourse& course = courses_[chunk];
     const Lanes fastest = inverse_step(point.by, now.ds).max(inverse_step(point.by, now.dz));
     course.largest_step = std::max(course.largest_step, fastest.maxCoeff());
     course.product[0] += (four.is_there * dot(point.by.l, point.by.l)).sum();
@@ -182,8 +182,8 @@ void ConeBarrier::restore() {
 
 double ConeBarrier::rounding(SolveState& state, std::span<const double> row_velocity) {
   if (contacts_.empty()) return 0;
-  worst_.assign(state.range_count(), 0.0);
-  run_over_contacts(state, [&](const ContactLanes& four, int k, int range) {
+  worst_.assign(state.chunk_count(), 0.0);
+  run_over_contacts(state, [&](const ContactLanes& four, int k, int chunk) {
     const LaneVector dlambda = four.load(state.dlambda), &c = compliance_[k];
     const LaneMatrix& inverse = point_[k].w_inverse;
     const LaneVector scaled = transposed_times(inverse, to_second_order(four.mu, dlambda));
@@ -192,8 +192,8 @@ double ConeBarrier::rounding(SolveState& state, std::span<const double> row_velo
     const LaneVector left = four.load(state.f_r) - four.load(row_velocity) - weighed;
     for (const Lanes& entries : {left.n, left.u, left.v}) {
       const double largest = entries.abs().maxCoeff<Eigen::PropagateNaN>();
-      if (!(largest <= worst_[range]))
-        worst_[range] = std::isnan(largest) ? std::numeric_limits<double>::infinity() : largest;
+      if (!(largest <= worst_[chunk]))
+        worst_[chunk] = std::isnan(largest) ? std::numeric_limits<double>::infinity() : largest;
     }
   });
   return std::ranges::max(worst_);

@@ -74,14 +74,14 @@ class ConeBarrier {
   void run_over_contacts(SolveState& state, const Task& task) const;
 
   std::vector<ContactLanes> contacts_;
-  std::vector<int> contacts_first_;  // (ranges + 1) of SolveState::run_over_rows, by their normal rows
+  std::vector<int> contacts_first_;  // (chunks + 1) of SolveState::run_over_rows, by their normal rows
   std::size_t count_ = 0;            // of cones
   std::vector<Point> point_, kept_;
   bool is_kept_ = false;                             // point_ itself is the iterate to come back to
   std::vector<LaneVector> scaled_gap_, compliance_;  // of the iterate that was factored: W^-T gap; C
   std::vector<Direction> now_, before_;
-  std::vector<BarrierCourse> courses_;  // scratch: of the ranges, largest_step its inverse
-  std::vector<double> worst_;           // scratch: of the ranges
+  std::vector<BarrierCourse> courses_;  // scratch: of the chunks, largest_step its inverse
+  std::vector<double> worst_;           // scratch: of the chunks
 };
 
 }  // namespace cleave

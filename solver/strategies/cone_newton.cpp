@@ -130,16 +130,16 @@ void ConeNewton::solve(SolveState& state) {
   }
 }
 
-// Ranges are summed in their order.
+// Chunks are summed in their order.
 ImpulseSet::Misses ConeNewton::misses(SolveState& state) {
-  range_energy_.assign(state.range_count(), 0.0);
-  const double largest = state.greatest_over_ranges([&](int first, int last) {
-    const ImpulseSet::Misses of_range =
+  chunk_energy_.assign(state.chunk_count(), 0.0);
+  const double largest = state.greatest_over_chunks([&](int first, int last, int chunk) {
+    const ImpulseSet::Misses of_chunk =
         state.step->set().misses(first, last, state.step->diagonal(), state.impulse, state.slack);
-    range_energy_[first / state.rows_of_a_range()] = of_range.energy;
-    return of_range.largest;
+    chunk_energy_[chunk] = of_chunk.energy;
+    return of_chunk.largest;
   });
-  return {largest, std::accumulate(range_energy_.begin(), range_energy_.end(), 0.0)};
+  return {largest, std::accumulate(chunk_energy_.begin(), chunk_energy_.end(), 0.0)};
 }
 
 // All of the step, or under Coulomb's law the first of its halves, quarters, ... that lowers the energy. Returns the residual.

@@ -53,7 +53,7 @@ class ConeNewton {
   StepShift shift_;
   int without_fall_ = 0, most_without_fall_ = 1;  // steps of a cone
   std::vector<double> energies_;                  // before every step and after the last
-  std::vector<double> range_energy_;              // scratch
+  std::vector<double> chunk_energy_;              // scratch
   std::vector<double> wanted_;                    // (m) on the rows of cones, w - d F / theta
   std::vector<double> impulse_before_, slack_before_, best_impulse_;  // (m)
 };

@@ -63,7 +63,7 @@ void InteriorIterate::start(SolveState& state) {
 
 // With the error of intervals, chunk by chunk.
 void InteriorIterate::update_velocity(SolveState& state) {
-  chunk_error_.assign(state.step->group_chunks().size(), 0.0);
+  chunk_error_.assign(state.chunk_count(), 0.0);
   if (cones_.product_count() > 0) return state.update_velocity();
   const auto find_error = [&](int first, int last, int chunk) {
     chunk_error_[chunk] = barrier_.error(state, first, last, row_error_);
@@ -135,14 +135,18 @@ void InteriorIterate::match_shift(SolveState& state, double tolerance, int most)
 }
 
 void InteriorIterate::solve(SolveState& state, const RowWork& set_force) {
+  courses_.resize(state.chunk_count());
+  const auto follow = [&](int first, int last, int chunk) {
+    courses_[chunk] = barrier_.follow(state, first, last);
+  };
   if (cones_.product_count() > 0) {
-    state.run_work(set_force);
+    state.run_over_rows(set_force);
     add_cones_to_right_hand_side(state);
-    state.solve();
+    state.solve({{}, std::ref(follow)});
   } else {
-    state.solve({set_force, {}});
+    state.solve({set_force, std::ref(follow)});
   }
-  course_ = barrier_.follow(state);
+  course_ = join_courses(courses_);
   const BarrierCourse of_cones = cones_.follow(state);
   course_.largest_step = std::min(course_.largest_step, of_cones.largest_step);
   for (int power = 0; power < 3; ++power) course_.product[power] += of_cones.product[power];

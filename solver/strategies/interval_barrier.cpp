@@ -17,9 +17,9 @@ double lesser(double a, double b) { return b < a ? b : a; }
 
 }  // namespace
 
-BarrierCourse join_courses(std::span<const BarrierCourse> ranges) {
+BarrierCourse join_courses(std::span<const BarrierCourse> chunks) {
   BarrierCourse course;
-  for (const BarrierCourse& part : ranges) {
+  for (const BarrierCourse& part : chunks) {
     course.largest_step = std::max(course.largest_step, part.largest_step);
     for (int power = 0; power < 3; ++power) course.product[power] += part.product[power];
   }
@@ -141,12 +141,10 @@ void IntervalBarrier::Side::follow(int first, int last, std::span<const double> 
     course.product[power] += std::accumulate(sum[power], sum[power] + kLanes, 0.0);
 }
 
-BarrierCourse IntervalBarrier::follow(SolveState& state) {
-  courses_.assign(state.range_count(), BarrierCourse{});
-  state.run_over_rows([&](int first, int last, int range) {
-    for (Side& side : sides()) side.follow(first, last, state.dlambda, courses_[range]);
-  });
-  return join_courses(courses_);
+BarrierCourse IntervalBarrier::follow(const SolveState& state, int first, int last) {
+  BarrierCourse course;
+  for (Side& side : sides()) side.follow(first, last, state.dlambda, course);
+  return course;
 }
 
 void IntervalBarrier::Side::correct(int first, int last, double trial, double low, double high) {
@@ -190,7 +188,8 @@ double IntervalBarrier::Side::error(int first, int last, std::span<const double>
   return worst;
 }
 
-double IntervalBarrier::error(const SolveState& state, int first, int last, std::span<double> row_error) const {
+double IntervalBarrier::error(const SolveState& state, int first, int last,
+                              std::span<double> row_error) const {
 #pragma omp simd
   for (int r = first; r < last; ++r) row_error[r] = moves_[r] * state.slack[r];
   double worst = 0;

@@ -38,8 +38,8 @@ struct BarrierCourse {
   double product[3] = {};
 };
 
-// Of the ranges of rows together; their largest steps are inverses.
-BarrierCourse join_courses(std::span<const BarrierCourse> ranges);
+// Of all chunks of rows together; their largest steps are inverses.
+BarrierCourse join_courses(std::span<const BarrierCourse> chunks);
 
 class IntervalBarrier {
  public:
@@ -57,7 +57,8 @@ class IntervalBarrier {
   // state.f_r for it.
   void aim(SolveState& state, int first, int last, double product, bool second_order);
   void right_hand_side(SolveState& state, int first, int last) const;  // state.f_r anew
-  BarrierCourse follow(SolveState& state);  // ds and dz from state.dlambda; returns where they lead
+  // ds and dz from state.dlambda; returns where they lead, largest_step its inverse.
+  BarrierCourse follow(const SolveState& state, int first, int last);
 
   // After swap_directions, of these rows: aims products that a step of `trial` would leave outside of [low, high] back at it,
   // with state.f_r.
@@ -113,7 +114,6 @@ class IntervalBarrier {
   InteriorConstants constants_;
   std::array<Side, 2> sides_ = {Side(1), Side(-1)};  // lower, upper
   std::size_t bounds_ = 0;                           // finite ones
-  std::vector<BarrierCourse> courses_;               // scratch: of the ranges, largest_step its inverse
   std::vector<RowUse> use_;                          // (m)
   std::vector<double> moves_;                        // (m) 0 where a row is fixed, else 1
 };

@@ -127,8 +127,11 @@ TEST_F(ExplainModel, ChangesNoRowAndVerifies) {
            without = read_csv(scratch_ / "without" / "steps.csv");
   ASSERT_EQ(with.rows.size(), without.rows.size());
   for (std::size_t row = 0; row < with.rows.size(); ++row)
-    for (const std::string& column : with.header)
-      if (!is_of_the_machine(column)) EXPECT_EQ(with.at(row, column), without.at(row, column)) << column;
+    for (const std::string& column : with.header) {
+      if (!is_of_the_machine(column)) {
+        EXPECT_EQ(with.at(row, column), without.at(row, column)) << column;
+      }
+    }
   EXPECT_EQ(run_cleave({"verify", scratch_ / "out"}).exit_code, 0);
   std::ofstream(scratch_ / "out" / "explain_model.csv", std::ios::app) << "x";
   EXPECT_EQ(run_cleave({"verify", scratch_ / "out"}).exit_code, 3);

@@ -76,8 +76,8 @@ TEST(ConeTest, LanesMissAsMuchAsTheirContacts) {
         EXPECT_TRUE(std::isnan(misses[lane]));
       } else {
         const FrictionCone& cone = cones[lane];
-        const double of_contact =
-            largest(cone_residual(cone.mu, d[cone.first_row], load_contact(cone, impulse), load_contact(cone, w)));
+        const double of_contact = largest(
+            cone_residual(cone.mu, d[cone.first_row], load_contact(cone, impulse), load_contact(cone, w)));
         EXPECT_NEAR(misses[lane], of_contact, 1e-13 * (1 + 100 * d[cone.first_row]));
       }
     }
@@ -105,8 +105,8 @@ TEST(ConeTest, MissesAreThoseOfEveryRowAndContact) {
   }
   for (const FrictionCone& cone : set.cones()) {
     std::fill_n(miss.begin() + cone.first_row, cone.row_count, 0.0);
-    miss[cone.first_row] =
-        largest(cone_residual(cone.mu, step.diagonal()[cone.first_row], load_contact(cone, impulse), load_contact(cone, w)));
+    miss[cone.first_row] = largest(cone_residual(cone.mu, step.diagonal()[cone.first_row],
+                                                 load_contact(cone, impulse), load_contact(cone, w)));
   }
   for (const int length : {1, 7, 50, m}) {
     double energy = 0;

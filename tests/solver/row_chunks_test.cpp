@@ -1,4 +1,4 @@
-// Light work on rows is dealt out in ranges: all rows once, and the same bytes however many threads there are.
+// Light work on rows is dealt out in chunks: all rows once, and the same bytes however many threads there are.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,14 +14,14 @@
 namespace cleave {
 namespace {
 
-StepProblem pile_of_several_ranges() {
+StepProblem pile_of_several_chunks() {
   StepProblem problem = make_pile(11, {.columns = 5, .rows = 5, .layers = 5});
   EXPECT_GT(problem.row_count(), SolveState::kFewRows);
   return problem;
 }
 
-TEST(RowRangesTest, HoldEveryRowOnce) {
-  const StepProblem problem = pile_of_several_ranges();
+TEST(RowChunksTest, HoldEveryRowOnce) {
+  const StepProblem problem = pile_of_several_chunks();
   StageClock clock(2);
   SolveState state(read_direct_options({.threads = 2}), clock);
   PreparedStep step;
@@ -32,17 +32,17 @@ TEST(RowRangesTest, HoldEveryRowOnce) {
     for (int r = first; r < last; ++r) ++visits[r];
   });
   EXPECT_EQ(visits, std::vector<int>(problem.row_count(), 1));
-  const int rows_of_a_range = state.rows_of_a_range();
-  EXPECT_GT(state.range_count(), 1);
-  for (const int greatest : {0, rows_of_a_range - 1, rows_of_a_range, problem.row_count() - 1})
+  EXPECT_GT(state.chunk_count(), 1u);
+  const int end_of_first = step.rows_of(step.group_chunks()[0]).second;
+  for (const int greatest : {0, end_of_first - 1, end_of_first, problem.row_count() - 1})
     EXPECT_EQ(state.greatest_over_rows([&](int r) { return r == greatest ? 2.0 : 1.0 * (r % 2); }), 2.0)
         << greatest;
   EXPECT_EQ(state.greatest_over_rows([](int r) { return r == 7 ? std::nan("") : 1.0; }),
             std::numeric_limits<double>::infinity());
 }
 
-TEST(RowRangesTest, ThreadsDoNotChangeTheBytes) {
-  const StepProblem problem = pile_of_several_ranges();
+TEST(RowChunksTest, ThreadsDoNotChangeTheBytes) {
+  const StepProblem problem = pile_of_several_chunks();
   for (const char* strategy : {"pivot:monolithic", "interior-point:monolithic"}) {
     Solution one = cold_start(problem);
     ASSERT_TRUE(is_exact(problem, make_step_solver(strategy, {})->solve(problem, {}, one), one)) << strategy;
