@@ -140,8 +140,9 @@ void PreparedStep::level_diagonal() {
   }
 }
 
-void PreparedStep::velocity(std::span<const double> impulse, std::span<double> v) const {
-  add_transpose(mass_jacobian_.data(), impulse, problem_->free_velocity, v);
+void PreparedStep::velocity(std::span<const double> impulse, std::span<double> v,
+                            const RowWork& before) const {
+  add_transpose(mass_jacobian_.data(), impulse, problem_->free_velocity, v, before);
 }
 
 void PreparedStep::add_jacobian_transpose(std::span<const double> x, std::span<double> out) const {
@@ -150,8 +151,9 @@ void PreparedStep::add_jacobian_transpose(std::span<const double> x, std::span<d
 
 // out (n, 6) = base + sum over the rows r of rows_r^T x_r: first the sum of each group, then of each body.
 void PreparedStep::add_transpose(const double* rows, std::span<const double> x, std::span<const double> base,
-                                 std::span<double> out) const {
+                                 std::span<double> out, const RowWork& before) const {
   run(group_chunks_, [&](const Chunk& chunk) {
+    do_rows(before, chunk);
     for (int g = chunk.first; g < chunk.last; ++g) {
       double sum[12];
       sum_rows(

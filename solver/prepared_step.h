@@ -30,6 +30,10 @@ struct Chunk {
 // What is done with the rows first .. last - 1 of a chunk of groups, the index of which is the third number. Handed to what
 // passes over the rows anyway, it takes no stage of its own, and finds in the cache what that has read. Empty: nothing.
 using RowWork = std::function<void(int first, int last, int chunk)>;
+// Before the rows are read, and after they are written.
+struct RowsAround {
+  RowWork before, after;
+};
 
 class PreparedStep {
  public:
@@ -71,8 +75,8 @@ class PreparedStep {
   }  // min C_r / d_r; inf without rows
   double exact_limit_m_per_s() const { return kExactLimit * velocity_scale_; }
 
-  // v (n, 6) = v0 + M^-1 J^T lambda
-  void velocity(std::span<const double> impulse, std::span<double> v) const;
+  // v (n, 6) = v0 + M^-1 J^T lambda; before: may write the lambda of a chunk.
+  void velocity(std::span<const double> impulse, std::span<double> v, const RowWork& before = {}) const;
   // out (m) = J v, of all rows or those of a chunk of groups.
   void jacobian_times(std::span<const double> v, std::span<double> out) const;
   void jacobian_times(const Chunk& chunk, std::span<const double> v, std::span<double> out) const;
@@ -96,7 +100,7 @@ class PreparedStep {
   template <class Task>
   void run(std::span<const Chunk> chunks, const Task& task) const;
   void add_transpose(const double* rows, std::span<const double> x, std::span<const double> base,
-                     std::span<double> out) const;
+                     std::span<double> out, const RowWork& before = {}) const;
 
   const StepProblem* problem_ = nullptr;
   ImpulseSet set_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -35,15 +36,17 @@ void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, Solve
   update_velocity();
 }
 
-void SolveState::update_velocity(const RowWork& after) {
+void SolveState::update_velocity(const RowsAround& around) {
+  const bool are_impulses_of_rows = step->set().axes().empty();
+  if (around.before && !are_impulses_of_rows) run_over_rows(around.before);
   const std::span<const double> in_rows = step->set().in_rows(impulse, row_impulse);
-  step->velocity(in_rows, velocity);
-  const bool is_slack_of_rows = step->set().axes().empty() && shift.empty();
-  step->slack(velocity, in_rows, slack, is_slack_of_rows ? after : RowWork());
+  step->velocity(in_rows, velocity, are_impulses_of_rows ? around.before : RowWork());
+  const bool is_slack_of_rows = are_impulses_of_rows && shift.empty();
+  step->slack(velocity, in_rows, slack, is_slack_of_rows ? around.after : RowWork());
   if (is_slack_of_rows) return;
   step->set().to_axes(slack);
   for (std::size_t k = 0; k < shift.size(); ++k) slack[step->set().cones()[k].first_row] += shift[k];
-  if (after) run_over_rows(after);
+  if (around.after) run_over_rows(around.after);
 }
 
 void SolveState::update_shift() {
@@ -106,19 +109,19 @@ void SolveState::states_from_impulses() {
 
 bool SolveState::factor_free() {
   const StepProblem& problem = step->problem();
-  run_over_rows([&](int first, int last, int) {
+  const auto take_states = [&](int first, int last, int) {
     for (int r = first; r < last; ++r) {
       const double compliance = std::max(problem.compliance[r], kFactoredCompliance * step->diagonal()[r]);
       weight[r] = state[r] == RowState::free ? 1 / compliance : 0.0;
       if (state[r] == RowState::lower) impulse[r] = problem.lower[r];
       if (state[r] == RowState::upper) impulse[r] = problem.upper[r];
     }
-  });
-  update_velocity();
+  };
+  update_velocity({std::ref(take_states), {}});
   return factor();
 }
 
-void SolveState::correct_free() {
+void SolveState::correct_free(const RowWork& after) {
   std::fill(f_v.begin(), f_v.end(), 0.0);
   const auto turn_slack = [this](int first, int last, int) {
     for (int r = first; r < last; ++r) f_r[r] = -slack[r];
@@ -128,19 +131,22 @@ void SolveState::correct_free() {
       if (state[r] == RowState::free) impulse[r] += dlambda[r];
     }
   };
-  solve({turn_slack, add_increment});
-  update_velocity();
+  solve({turn_slack, {}});
+  update_velocity({add_increment, after});
 }
 
 double SolveState::refine_free(double target, int most_steps, bool count) {
-  const auto largest = [&] {
-    return greatest_over_rows([&](int r) { return state[r] == RowState::free ? std::abs(slack[r]) : 0.0; });
+  const auto find_largest = [this](int first, int last, int chunk) {
+    const auto size = [this](int r) { return state[r] == RowState::free ? std::abs(slack[r]) : 0.0; };
+    chunk_values[chunk] = greatest_of(first, last, size);
   };
-  double worst = largest();
+  chunk_values.resize(chunk_count());
+  run_over_rows(find_largest);
+  double worst = greatest_of(chunk_values);
   for (int k = 0; k < most_steps && worst > target; ++k) {
-    correct_free();
+    correct_free(find_largest);
     if (count) ++summary->refinements;
-    const double next = largest();
+    const double next = greatest_of(chunk_values);
     if (!(next < 0.5 * worst)) return next;
     worst = next;
   }

@@ -51,8 +51,9 @@ struct SolveState {
   void begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,
              std::span<const double> warm_impulse);
 
-  // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b (plus the shift) from the impulses; after: with the w of a chunk.
-  void update_velocity(const RowWork& after = {});
+  // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b (plus the shift) from the impulses. around: may write the impulses of
+  // a chunk, and reads its w.
+  void update_velocity(const RowsAround& around = {});
 
   // The same with the shift of these velocities.
   void update_velocity_and_shift();
@@ -79,7 +80,8 @@ struct SolveState {
 
   // One step of iterative refinement on the free rows with the present factor, in increments:
   //   solve  M dv - J^T dlambda = 0,  J dv + C dlambda = -w  on free rows;  lambda += dlambda
-  void correct_free();
+  // after: with the new w of a chunk.
+  void correct_free(const RowWork& after = {});
 
   // correct_free until w on the free rows is below `target` or no longer falls; returns the largest |w| left.
   double refine_free(double target, int most_steps, bool count);

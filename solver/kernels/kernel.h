@@ -19,10 +19,6 @@
 
 namespace cleave {
 
-struct RowsAround {
-  RowWork before, after;
-};
-
 class Kernel {
  public:
   virtual ~Kernel() = default;

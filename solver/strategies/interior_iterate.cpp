@@ -62,13 +62,13 @@ void InteriorIterate::start(SolveState& state) {
 }
 
 // With the error of intervals, chunk by chunk.
-void InteriorIterate::update_velocity(SolveState& state) {
-  chunk_error_.assign(state.chunk_count(), 0.0);
-  if (cones_.product_count() > 0) return state.update_velocity();
+void InteriorIterate::update_velocity(SolveState& state, const RowWork& move) {
+  chunk_error_.resize(state.chunk_count());
+  if (cones_.product_count() > 0) return state.update_velocity({move, {}});
   const auto find_error = [&](int first, int last, int chunk) {
     chunk_error_[chunk] = barrier_.error(state, first, last, row_error_);
   };
-  state.update_velocity(std::ref(find_error));
+  state.update_velocity({move, std::ref(find_error)});
 }
 
 void InteriorIterate::measure(SolveState& state) {
@@ -202,16 +202,16 @@ void InteriorIterate::correct_centrality(SolveState& state) {
 
 void InteriorIterate::advance(SolveState& state, double step) {
   kept_impulse_.resize(state.impulse.size());
-  state.run_over_rows([&](int first, int last, int) {
+  const auto move = [&](int first, int last, int) {
     if (is_to_be_kept_) {
       std::copy(state.impulse.begin() + first, state.impulse.begin() + last, kept_impulse_.begin() + first);
       barrier_.keep(first, last);
     }
     barrier_.advance(state, first, last, step);
-  });
-  is_to_be_kept_ = false;
+  };
   cones_.advance(state, step);
-  update_velocity(state);
+  update_velocity(state, std::ref(move));
+  is_to_be_kept_ = false;
   state.update_shift();
   measure(state);
 }

@@ -76,7 +76,7 @@ class InteriorIterate {
   void choose_target(Aim aim);
   void add_cones_to_right_hand_side(SolveState& state) const;
   void solve(SolveState& state, const RowWork& set_force);  // which sets the part of the bounds in state.f_r
-  void update_velocity(SolveState& state);
+  void update_velocity(SolveState& state, const RowWork& move = {});  // which writes the impulses
   void measure(SolveState& state);
 
   InteriorConstants constants_;

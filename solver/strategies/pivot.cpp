@@ -80,11 +80,11 @@ class Pivot : public Strategy {
   static void clamp(SolveState& state) {
     StageTimer timer(state.tasks.clock(), Stage::predict);
     const StepProblem& problem = state.step->problem();
-    state.run_over_rows([&](int first, int last, int) {
+    const auto move_inside = [&](int first, int last, int) {
       for (int r = first; r < last; ++r)
         state.impulse[r] = std::clamp(state.impulse[r], problem.lower[r], problem.upper[r]);
-    });
-    state.update_velocity();
+    };
+    state.update_velocity({move_inside, {}});
     state.states_from_impulses();
   }
 

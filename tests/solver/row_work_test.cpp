@@ -1,5 +1,5 @@
 // What is handed to a kernel's passes over the rows is done there: on every row once, weights and right-hand sides before they are
-// read, and after increments are written. The answer has the bytes of one where all was done beforehand.
+// read, and after increments are written; likewise where velocities follow from impulses. The answer has the bytes of one where all was done beforehand.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 #include "tests/solver/cone_contacts.h"
 #include "tests/solver/kernel_wrapper.h"
 #include "tests/solver/problem_makers.h"
+#include "tests/solver/turned_boxes.h"
 
 namespace cleave {
 namespace {
@@ -162,6 +163,44 @@ TEST(RowWorkOfCones, SeesRowsAsTheyAre) {
                }});
   EXPECT_EQ(state.dlambda, dlambda);
   EXPECT_EQ(seen, dlambda);
+}
+
+// Velocities from impulses that are written on the way, and slacks that are read where they come up: of rows, of turned boxes and of cones.
+TEST(RowWorkOfVelocities, IsDoneBeforeAndAfter) {
+  const StepProblem pile = make_pile(5, {.columns = 4, .rows = 4, .layers = 4});
+  for (const StepProblem& problem :
+       {pile, turn_boxes(pile, 5), make_cone_pile(5, 1e-5, ContactSet::coulomb)}) {
+    PreparedStep step;
+    step.prepare(problem);
+    StageClock clock(2);
+    SolveState state(read_direct_options({.threads = 2}), clock);
+    SolveSummary summary;
+    const std::unique_ptr<Kernel> kernel = kernel_named("monolithic");
+    state.begin(step, *kernel, summary, std::vector<double>(problem.row_count(), 0.0));
+    std::vector<double> impulse(problem.row_count());
+    for (int r = 0; r < problem.row_count(); ++r) impulse[r] = 0.5 - 0.01 * (r % 90);
+    state.impulse = impulse;
+    state.update_velocity_and_shift();  // so that there is a shift
+    state.update_velocity();
+    const std::vector<double> velocity = state.velocity, slack = state.slack;
+    if (step.set().has_coulomb()) {
+      std::vector<double> of_rows(slack.size());
+      step.slack(velocity, impulse, of_rows);
+      EXPECT_NE(slack, of_rows) << "no shift";
+    }
+    std::ranges::fill(state.impulse, kUnwritten);
+    std::vector<double> seen(slack.size(), kUnwritten);
+    state.update_velocity(
+        {[&](int first, int last, int) {
+           std::copy(impulse.begin() + first, impulse.begin() + last, state.impulse.begin() + first);
+         },
+         [&](int first, int last, int) {
+           std::copy(state.slack.begin() + first, state.slack.begin() + last, seen.begin() + first);
+         }});
+    EXPECT_EQ(state.velocity, velocity);
+    EXPECT_EQ(state.slack, slack);
+    EXPECT_EQ(seen, slack);
+  }
 }
 
 }  // namespace
