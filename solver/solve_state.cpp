@@ -136,15 +136,13 @@ void SolveState::correct_free(const RowWork& after) {
 }
 
 double SolveState::refine_free(double target, int most_steps, bool count) {
-  const auto find_largest = [this](int first, int last, int chunk) {
-    const auto size = [this](int r) { return state[r] == RowState::free ? std::abs(slack[r]) : 0.0; };
+  const auto size = [this](int r) { return state[r] == RowState::free ? std::abs(slack[r]) : 0.0; };
+  const auto find_largest = [&](int first, int last, int chunk) {
     chunk_values[chunk] = greatest_of(first, last, size);
   };
-  chunk_values.resize(chunk_count());
-  run_over_rows(find_largest);
-  double worst = greatest_of(chunk_values);
+  double worst = greatest_over_rows(size);
   for (int k = 0; k < most_steps && worst > target; ++k) {
-    correct_free(find_largest);
+    correct_free(std::cref(find_largest));
     if (count) ++summary->refinements;
     const double next = greatest_of(chunk_values);
     if (!(next < 0.5 * worst)) return next;

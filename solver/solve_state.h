@@ -153,10 +153,8 @@ struct SolveState {
 template <class Task>
 void SolveState::run_over_rows(const Task& task) {
   const auto chunks = step->group_chunks();
-  const auto run_one = [&](const Chunk& chunk) {
-    const auto [first, last] = step->rows_of(chunk);
-    task(first, last, static_cast<int>(&chunk - chunks.data()));
-  };
+  const RowWork work = std::cref(task);
+  const auto run_one = [&](const Chunk& chunk) { step->do_rows(work, chunk); };
   if (step->row_count() > kFewRows) return tasks.run_over(chunks, run_one);
   for (const Chunk& chunk : chunks) run_one(chunk);
 }

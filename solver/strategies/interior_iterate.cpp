@@ -61,35 +61,37 @@ void InteriorIterate::start(SolveState& state) {
   measure(state);
 }
 
-// With the error of intervals, chunk by chunk.
+// With the error of intervals, chunk by chunk, for measure().
 void InteriorIterate::update_velocity(SolveState& state, const RowWork& move) {
-  chunk_error_.resize(state.chunk_count());
+  state.chunk_values.resize(state.chunk_count());
   if (cones_.product_count() > 0) return state.update_velocity({move, {}});
   const auto find_error = [&](int first, int last, int chunk) {
-    chunk_error_[chunk] = barrier_.error(state, first, last, row_error_);
+    state.chunk_values[chunk] = barrier_.error(state, first, last, row_error_);
   };
   state.update_velocity({move, std::ref(find_error)});
 }
 
 void InteriorIterate::measure(SolveState& state) {
-  error_ = cones_.product_count() > 0 ? state.residual_of_cones() : SolveState::greatest_of(chunk_error_);
+  error_ =
+      cones_.product_count() > 0 ? state.residual_of_cones() : SolveState::greatest_of(state.chunk_values);
 }
 
 bool InteriorIterate::factor(SolveState& state, double delta) {
   std::ranges::fill(state.f_v, 0.0);  // in every direction, and an attempt at the end leaves something else
   const StepProblem& problem = state.step->problem();
-  const auto set_compliance = [&](int first, int last) {
+  const bool has_cones = cones_.product_count() > 0;
+  const auto set_compliance = [&](int first, int last, int) {
     for (int r = first; r < last; ++r)
       state.weight[r] = std::max(problem.compliance[r], delta * state.step->diagonal()[r]);
   };
-  const auto weigh = [&](int first, int last, int) { barrier_.weigh(state, first, last); };
-  const auto weigh_all = [&](int first, int last, int chunk) {
-    set_compliance(first, last);
-    weigh(first, last, chunk);
+  const auto weigh = [&](int first, int last, int chunk) {
+    if (!has_cones) set_compliance(first, last, chunk);
+    barrier_.weigh(state, first, last);
   };
-  if (cones_.product_count() == 0) return state.factor(std::ref(weigh_all));
-  state.run_over_rows([&](int first, int last, int) { set_compliance(first, last); });
-  cones_.weigh(state, state.weight);
+  if (has_cones) {
+    state.run_over_rows(set_compliance);
+    cones_.weigh(state, state.weight);
+  }
   return state.factor(std::ref(weigh));
 }
 

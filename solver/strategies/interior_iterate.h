@@ -67,8 +67,10 @@ class InteriorIterate {
   // One iterate, to come back to; what is kept of intervals is copied as the next step changes it.
   void keep();
   void restore(SolveState& state);
-  // Its impulses alone, with their velocities; some steps after it was kept.
-  void load_kept_impulses(SolveState& state) const { state.load(kept_impulse_); }
+  // Its impulses alone, with their velocities.
+  void load_kept_impulses(SolveState& state) const {
+    if (!is_to_be_kept_) state.load(kept_impulse_);  // else it is the present one
+  }
 
  private:
   void choose_impulses(SolveState& state);
@@ -86,10 +88,10 @@ class InteriorIterate {
   BarrierCourse course_, kept_course_;  // of the direction
   std::vector<BarrierCourse> courses_;  // scratch: of the bounds in every chunk
   double target_ = 0;                   // product that Mehrotra's direction aims at
-  double error_ = 0;
-  bool is_to_be_kept_ = false;
+  double error_ = 0;                    // of the present iterate
+  bool is_to_be_kept_ = false;          // which is the one to come back to
   std::vector<double> kept_impulse_, kept_dlambda_;
-  std::vector<double> row_speed_, row_error_, chunk_error_;
+  std::vector<double> row_speed_, row_error_;
   std::vector<double> change_;        // (n, 6) M^-1 J^T dlambda
   std::vector<double> wanted_shift_;  // (cones)
 };

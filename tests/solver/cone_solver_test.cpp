@@ -17,6 +17,7 @@
 #include "solver/strategies/interior_iterate.h"
 #include "tests/solver/allocation_counter.h"
 #include "tests/solver/cone_contacts.h"
+#include "tests/solver/kernel_by_name.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/solver_checks.h"
 #include "tests/solver/turned_boxes.h"
@@ -293,9 +294,7 @@ struct StateOf {
       : parts(single_part(problem.body_count())), state(read_direct_options({}), clock) {
     clock.start();
     step.prepare(problem);
-    const auto row =
-        std::ranges::find(kernel_table(), kernel_name, [](const KernelRow& k) { return k.name; });
-    kernel = row->make(defaults_of(*row));
+    kernel = make_kernel(kernel_name);
     kernel->analyze(step, parts, state.tasks);
     state.begin(step, *kernel, summary, std::vector<double>(problem.row_count(), 0.0));
   }
@@ -317,6 +316,32 @@ TEST_P(ConeSolverTest, DirectionsSolveTheirOwnSystem) {
   iterate.find_direction(of.state, InteriorIterate::Aim::affine);
   EXPECT_GT(iterate.error(), 1e-3);
   EXPECT_LE(iterate.rounding(of.state), 1e-9);
+}
+
+// It is copied no sooner than a step leaves it.
+TEST_P(ConeSolverTest, AKeptIterateIsThereBeforeAndAfterAStep) {
+  const StepProblem problem = make_cone_pile(4, 1e-5);
+  StateOf of(problem, GetParam());
+  InteriorIterate iterate{InteriorConstants{}};
+  iterate.start(of.state);
+  iterate.keep();
+  const std::vector<double> kept = of.state.impulse;
+  ASSERT_TRUE(iterate.factor(of.state, kFactoredCompliance));
+  iterate.find_direction(of.state, InteriorIterate::Aim::affine);
+  const double error = iterate.error();
+  iterate.advance(of.state, 0.5);
+  EXPECT_NE(of.state.impulse, kept);
+  iterate.load_kept_impulses(of.state);
+  EXPECT_EQ(of.state.impulse, kept);
+  iterate.restore(of.state);
+  EXPECT_EQ(of.state.impulse, kept);
+  EXPECT_EQ(iterate.error(), error);
+  iterate.advance(of.state, 0.5);
+  iterate.keep();
+  const std::vector<double> next = of.state.impulse;
+  iterate.load_kept_impulses(of.state);
+  EXPECT_EQ(of.state.impulse, next);
+  EXPECT_NE(next, kept);
 }
 
 // Near the answer a step squares the error, or under Coulomb's law leaves a hundredth: not so with any eigenvalue of the

@@ -11,6 +11,7 @@
 #include "solver/solve_state.h"
 #include "solver/step_solver.h"
 #include "solver/strategies/strategy.h"
+#include "tests/solver/kernel_by_name.h"
 #include "tests/solver/kernel_wrapper.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/solver_checks.h"
@@ -104,12 +105,6 @@ class SpoiltKernel : public KernelWrapper {
   int row_, body_;
   double off_;
 };
-
-std::unique_ptr<Kernel> make_kernel(const std::string& name) {
-  for (const KernelRow& row : kernel_table())
-    if (name == row.name) return row.make(defaults_of(row));
-  throw std::logic_error(name);
-}
 
 // Whether the strategy says that it succeeded, and what the judge says of its impulses.
 struct Claim {

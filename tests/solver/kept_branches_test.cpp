@@ -10,6 +10,7 @@
 
 #include "solver/kernels/kernel.h"
 #include "solver/registry.h"
+#include "tests/solver/kernel_by_name.h"
 #include "tests/solver/problem_makers.h"
 
 namespace cleave {
@@ -28,9 +29,7 @@ class KeptBranchesTest : public testing::TestWithParam<std::string> {
   }
 
   std::unique_ptr<Kernel> make_kernel() {
-    const auto row =
-        std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return std::string(k.name); });
-    auto kernel = row->make(defaults_of(*row));
+    auto kernel = cleave::make_kernel(GetParam());
     kernel->analyze(step_, parts_, tasks_);
     return kernel;
   }

@@ -15,6 +15,7 @@
 #include "solver/memory_count.h"
 #include "solver/registry.h"
 #include "tests/solver/allocation_counter.h"
+#include "tests/solver/kernel_by_name.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/solver_checks.h"
 
@@ -30,12 +31,6 @@ std::vector<std::string> kernel_names() {
   for (const KernelRow& row : kernel_table())
     if (std::string_view(row.name) != "auto") names.push_back(row.name);
   return names;
-}
-
-std::unique_ptr<Kernel> make_kernel(const std::string& name) {
-  const auto row =
-      std::ranges::find(kernel_table(), name, [](const KernelRow& r) { return std::string(r.name); });
-  return row->make(defaults_of(*row));
 }
 
 class MemoryTest : public testing::TestWithParam<std::string> {

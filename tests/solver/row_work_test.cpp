@@ -7,15 +7,16 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "solver/carried_factor.h"
 #include "solver/kernels/kernel.h"
-#include "solver/registry.h"
 #include "solver/solve_state.h"
 #include "tests/solver/cone_contacts.h"
-#include "tests/solver/kernel_wrapper.h"
+#include "tests/solver/dear_kernel.h"
+#include "tests/solver/kernel_by_name.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/turned_boxes.h"
 
@@ -24,30 +25,13 @@ namespace {
 
 constexpr double kUnwritten = std::numeric_limits<double>::quiet_NaN();
 
-// Dear to factor, so that its factor is carried; where that is wrong, conjugate gradients give up and the system is factored.
-class Dear : public KernelWrapper {
- public:
-  Dear(std::unique_ptr<Kernel> kernel, bool is_wrong)
-      : KernelWrapper(std::move(kernel)), is_wrong_(is_wrong) {}
-  double local_mflop() const override { return 1e3; }
-  void apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) override {
-    KernelWrapper::apply_factor(f, x, tasks);
-    if (is_wrong_) std::ranges::for_each(x, [](double& entry) { entry = -entry; });
-  }
-
- private:
-  bool is_wrong_;
-};
-
-// A kernel of the table, or "carried" or "wrongly carried" one.
+// A kernel of the table, or "carried" or "wrongly carried" one: with a wrong factor conjugate gradients give up, and the system is
+// factored.
 std::unique_ptr<Kernel> kernel_named(const std::string& name) {
   const std::string own = name.substr(name.rfind(' ') + 1);
-  const auto row =
-      std::ranges::find(kernel_table(), own, [](const KernelRow& k) { return std::string(k.name); });
-  std::unique_ptr<Kernel> kernel = row->make(defaults_of(*row));
-  if (own == name) return kernel;
-  return std::make_unique<CarriedFactor>(
-      std::make_unique<Dear>(std::move(kernel), name.starts_with("wrongly")));
+  if (own == name) return make_kernel(name);
+  const std::optional<double> planted = name.starts_with("wrongly") ? std::optional(-1.0) : std::nullopt;
+  return std::make_unique<CarriedFactor>(std::make_unique<Dear>(planted, make_kernel(own)));
 }
 
 class RowWorkTest : public testing::TestWithParam<std::string> {
@@ -136,7 +120,7 @@ TEST(RowWorkOfCones, SeesRowsAsTheyAre) {
   SolveState state(read_direct_options({}), clock);
   SolveSummary summary;
   const std::vector<int> parts = single_part(problem.body_count());
-  const std::unique_ptr<Kernel> kernel = kernel_named("monolithic");
+  const std::unique_ptr<Kernel> kernel = make_kernel("monolithic");
   kernel->analyze(step, parts, state.tasks);
   state.begin(step, *kernel, summary, std::vector<double>(problem.row_count(), 0.0));
   std::ranges::fill(state.weight, 1.0);
@@ -175,7 +159,7 @@ TEST(RowWorkOfVelocities, IsDoneBeforeAndAfter) {
     StageClock clock(2);
     SolveState state(read_direct_options({.threads = 2}), clock);
     SolveSummary summary;
-    const std::unique_ptr<Kernel> kernel = kernel_named("monolithic");
+    const std::unique_ptr<Kernel> kernel = make_kernel("monolithic");
     state.begin(step, *kernel, summary, std::vector<double>(problem.row_count(), 0.0));
     std::vector<double> impulse(problem.row_count());
     for (int r = 0; r < problem.row_count(); ++r) impulse[r] = 0.5 - 0.01 * (r % 90);

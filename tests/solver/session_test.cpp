@@ -12,7 +12,7 @@
 #include "solver/carried_factor.h"
 #include "solver/direct_solver.h"
 #include "solver/registry.h"
-#include "tests/solver/kernel_wrapper.h"
+#include "tests/solver/dear_kernel.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/seeded_random.h"
 #include "tests/solver/solver_checks.h"
@@ -82,23 +82,6 @@ INSTANTIATE_TEST_SUITE_P(Kernels, SessionTest,
                            std::ranges::replace(name, '-', '_');
                            return name;
                          });
-
-// Dear to factor and cheap to apply, so that its factor is carried; where a wrong one is planted, what is carried is
-// that of another matrix: diagonal, with entries of this sign and size.
-class Dear : public KernelWrapper {
- public:
-  explicit Dear(std::optional<double> planted = {})
-      : KernelWrapper(make_monolithic_kernel(Settings())), planted_(planted) {}
-  double local_mflop() const override { return 1e3; }
-  double apply_mflop() const override { return 0; }
-  void apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) override {
-    if (!planted_) return KernelWrapper::apply_factor(f, x, tasks);
-    for (std::size_t k = 0; k < f.size(); ++k) x[k] = *planted_ * f[k] * static_cast<double>(1 + k % 7);
-  }
-
- private:
-  std::optional<double> planted_;
-};
 
 // Largest component of H dv - (f_v + J^T D f_r).
 double defect(const PreparedStep& step, const std::vector<double>& d, const std::vector<double>& f_v,

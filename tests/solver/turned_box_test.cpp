@@ -11,6 +11,7 @@
 #include "solver/step_solver.h"
 #include "solver/strategies/interior_iterate.h"
 #include "tests/solver/allocation_counter.h"
+#include "tests/solver/kernel_by_name.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/solver_checks.h"
 #include "tests/solver/turned_boxes.h"
@@ -118,8 +119,7 @@ TEST_P(TurnedBoxTest, DirectionsSolveTheirOwnSystem) {
   step.prepare(problem);
   SolveState state(read_direct_options({}), clock);
   SolveSummary summary;
-  const auto row = std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return k.name; });
-  const std::unique_ptr<Kernel> kernel = row->make(defaults_of(*row));
+  const std::unique_ptr<Kernel> kernel = make_kernel(GetParam());
   kernel->analyze(step, parts, state.tasks);
   const std::vector<double> cold(problem.row_count(), 0.0);
   state.begin(step, *kernel, summary, cold);

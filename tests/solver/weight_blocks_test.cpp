@@ -11,6 +11,7 @@
 #include "solver/impulse_set.h"
 #include "solver/kernels/kernel.h"
 #include "solver/registry.h"
+#include "tests/solver/kernel_by_name.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/turned_boxes.h"
 
@@ -60,8 +61,7 @@ class WeightBlocksTest : public testing::TestWithParam<std::string> {
     ParallelTasks tasks(clock, threads);
     PreparedStep step;
     step.prepare(problem);
-    const auto row = std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return k.name; });
-    const std::unique_ptr<Kernel> kernel = row->make(defaults_of(*row));
+    const std::unique_ptr<Kernel> kernel = make_kernel(GetParam());
     kernel->analyze(step, parts, tasks);
     EXPECT_TRUE(kernel->factor({system.d, system.blocks}, tasks));
     Increments x{std::vector<double>(system.f_v.size()), std::vector<double>(system.f_r.size())};
@@ -197,8 +197,7 @@ TEST_P(WeightBlocksTest, BlocksChangeFromFactorToFactor) {
   ParallelTasks tasks(clock, 1);
   PreparedStep step;
   step.prepare(problem);
-  const auto row = std::ranges::find(kernel_table(), GetParam(), [](const KernelRow& k) { return k.name; });
-  const std::unique_ptr<Kernel> kernel = row->make(defaults_of(*row));
+  const std::unique_ptr<Kernel> kernel = make_kernel(GetParam());
   kernel->analyze(step, parts, tasks);
   for (const LinearSystem* system : {&blocks, &scalar, &blocks}) {
     ASSERT_TRUE(kernel->factor({system->d, system->blocks}, tasks));
