@@ -1,6 +1,5 @@
 #include "solver/residual.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
@@ -15,7 +14,6 @@ namespace {
 // and in double the judge would see its own rounding errors.
 using Real = long double;
 using Vector6 = Eigen::Matrix<Real, 6, 1>;
-using Matrix6 = Eigen::Matrix<Real, 6, 6>;
 using ConstVector6 = Eigen::Map<const Eigen::Matrix<double, 6, 1>>;
 using ConstMatrix6 = Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>;
 
@@ -28,13 +26,66 @@ bool all_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); });
 }
 
-struct BodyState {
-  Eigen::LLT<Matrix6> mass_factor;
-  Vector6 impulse = Vector6::Zero();  // J^T lambda
-  Vector6 velocity;
+// Cholesky's factor of a mass, M = L L^T, without what leading zeros of a row leave zero: of a body about its centre of mass,
+// all between moving and turning.
+class MassFactor {
+ public:
+  MassFactor() = default;
+  explicit MassFactor(const double* mass);  // (6, 6)
+
+  // M^-1 f; NaN where M is not positive definite.
+  Vector6 solve(Vector6 f) const;
+
+ private:
+  Real l_[6][6];
+  int first_[6];  // column of the first entry of a row that is not zero
+  bool is_positive_ = true;
 };
 
-Vector6 jacobian_block(const StepProblem& problem, int row, int side) {
+MassFactor::MassFactor(const double* mass) {
+  for (int i = 0; i < 6; ++i) {
+    const double* row = mass + 6 * i;
+    first_[i] = static_cast<int>(std::find_if(row, row + i, [](double entry) { return entry != 0; }) - row);
+    for (int j = first_[i]; j <= i; ++j) {
+      Real sum = 0;
+      for (int k = std::max(first_[i], first_[j]); k < j; ++k) sum += l_[i][k] * l_[j][k];
+      const Real left = row[j] - sum;
+      l_[i][j] = j < i ? left / l_[j][j] : std::sqrt(left);
+      is_positive_ = is_positive_ && (j < i || left > 0);
+    }
+  }
+}
+
+Vector6 MassFactor::solve(Vector6 f) const {
+  if (!is_positive_) return Vector6::Constant(kNan);
+  for (int i = 0; i < 6; ++i) {
+    Real sum = 0;
+    for (int k = first_[i]; k < i; ++k) sum += l_[i][k] * f[k];
+    f[i] = (f[i] - sum) / l_[i][i];
+  }
+  for (int i = 5; i >= 0; --i) {
+    Real sum = 0;
+    for (int k = i + 1; k < 6; ++k)
+      if (first_[k] <= i) sum += l_[k][i] * f[k];
+    f[i] = (f[i] - sum) / l_[i][i];
+  }
+  return f;
+}
+
+// Of all bodies; those that are not needed have zeros for impulses, and no more. Side by side for each quantity: every row
+// looks at velocities, and few at the factors, which are far larger.
+struct BodyStates {
+  explicit BodyStates(int bodies)
+      : is_needed(bodies, 0), impulse(bodies, Vector6::Zero()), velocity(bodies), mass_factor(bodies) {}
+
+  std::vector<char> is_needed;
+  std::vector<Vector6> impulse;  // J^T lambda
+  std::vector<Vector6> velocity;
+  std::vector<MassFactor> mass_factor;
+};
+
+// Not evaluated: six numbers of extended precision take longer to store than to make anew.
+auto jacobian_block(const StepProblem& problem, int row, int side) {
   return ConstVector6(&problem.jacobian[12 * row + 6 * side]).cast<Real>();
 }
 
@@ -43,82 +94,129 @@ using Asked = std::span<const char>;
 
 bool is_asked(Asked asked, int row) { return asked.empty() || asked[row] != 0; }
 
-// (n) 1 where a row that is asked for is on the body.
-std::vector<char> find_bodies_asked(const StepProblem& problem, Asked asked) {
-  std::vector<char> is_needed(problem.body_count(), asked.empty());
+void mark_needed(const StepProblem& problem, Asked asked, BodyStates& bodies) {
+  if (asked.empty()) std::ranges::fill(bodies.is_needed, 1);
   for (int r = 0; r < static_cast<int>(asked.size()); ++r)
     for (const int body : {problem.row_body[2 * r], problem.row_body[2 * r + 1]})
-      if (body >= 0 && asked[r]) is_needed[body] = 1;
-  return is_needed;
+      if (body >= 0 && asked[r]) bodies.is_needed[body] = 1;
 }
 
-std::vector<BodyState> find_body_states(const StepProblem& problem, std::span<const double> impulse,
-                                        Asked asked = {}) {
-  std::vector<BodyState> bodies(problem.body_count());
-  const std::vector<char> is_needed = find_bodies_asked(problem, asked);
-  for (int r = 0; r < problem.row_count(); ++r) {
+// sum += J^T lambda of `count` rows, of the body on one side of all of them. Six sums stay in registers: to store and load
+// numbers of extended precision takes several times as long as to add them.
+void add_impulses(const double* jacobian, const double* impulse, int count, Vector6& sum) {
+  Real s0 = sum[0], s1 = sum[1], s2 = sum[2], s3 = sum[3], s4 = sum[4], s5 = sum[5];
+  for (int r = 0; r < count; ++r, jacobian += 12) {
+    const Real lambda = impulse[r];
+    s0 += jacobian[0] * lambda;
+    s1 += jacobian[1] * lambda;
+    s2 += jacobian[2] * lambda;
+    s3 += jacobian[3] * lambda;
+    s4 += jacobian[4] * lambda;
+    s5 += jacobian[5] * lambda;
+  }
+  sum << s0, s1, s2, s3, s4, s5;
+}
+
+// The end of the rows from `row` on that join the same bodies.
+int end_of_pair(const StepProblem& problem, int row) {
+  int end = row + 1;
+  while (end < problem.row_count() && problem.row_body[2 * end] == problem.row_body[2 * row] &&
+         problem.row_body[2 * end + 1] == problem.row_body[2 * row + 1])
+    ++end;
+  return end;
+}
+
+BodyStates find_body_states(const StepProblem& problem, std::span<const double> impulse, Asked asked = {}) {
+  BodyStates bodies(problem.body_count());
+  mark_needed(problem, asked, bodies);
+  for (int first = 0, last = 0; first < problem.row_count(); first = last) {
+    last = end_of_pair(problem, first);
     for (int side = 0; side < 2; ++side) {
-      const int body = problem.row_body[2 * r + side];
-      if (body >= 0 && is_needed[body])
-        bodies[body].impulse += jacobian_block(problem, r, side) * Real(impulse[r]);
+      const int body = problem.row_body[2 * first + side];
+      if (body >= 0 && bodies.is_needed[body])
+        add_impulses(&problem.jacobian[12 * first + 6 * side], &impulse[first], last - first,
+                     bodies.impulse[body]);
     }
   }
   for (int i = 0; i < problem.body_count(); ++i) {
-    if (!is_needed[i]) continue;
-    BodyState& body = bodies[i];
-    body.mass_factor.compute(ConstMatrix6(&problem.mass[36 * i]).cast<Real>());
-    body.velocity =
-        ConstVector6(&problem.free_velocity[6 * i]).cast<Real>() + body.mass_factor.solve(body.impulse);
-    if (body.mass_factor.info() != Eigen::Success) body.velocity.setConstant(kNan);
+    if (!bodies.is_needed[i]) continue;
+    bodies.mass_factor[i] = MassFactor(&problem.mass[36 * i]);
+    bodies.velocity[i] = ConstVector6(&problem.free_velocity[6 * i]).cast<Real>() +
+                         bodies.mass_factor[i].solve(bodies.impulse[i]);
   }
   return bodies;
 }
 
-// A row as its bounds see it: itself, or the axis of a turned box that stands in its place.
-struct AxisRow {
-  std::array<Vector6, 2> jacobian;  // of the two bodies
+// velocity: (n, 6), of which bodies that are not needed keep theirs.
+void write_velocities(const BodyStates& bodies, std::span<double> velocity) {
+  for (std::size_t i = 0; i < bodies.velocity.size(); ++i)
+    for (int k = 0; bodies.is_needed[i] && k < 6; ++k)
+      velocity[6 * i + k] = static_cast<double>(bodies.velocity[i][k]);
+}
+
+// A row as its bounds see it: itself,
+struct PlainRow {
+  const StepProblem& problem;
+  int row;
   Real rhs, impulse;
+
+  auto jacobian(int side) const { return jacobian_block(problem, row, side); }
 };
 
-// The row itself plus, where its contact's box is turned, what makes it an axis: of the tangents t1, t2 the
-// first becomes c t1 + s t2, the second c t2 - s t1.
-AxisRow axis_of_row(const StepProblem& problem, std::span<const double> impulse, int row) {
-  AxisRow axis = {
-      {jacobian_block(problem, row, 0), jacobian_block(problem, row, 1)}, problem.rhs[row], impulse[row]};
+// or the axis of a turned box that stands in its place.
+struct AxisRow {
+  std::array<Vector6, 2> blocks;  // of the two bodies
+  Real rhs, impulse;
+
+  const Vector6& jacobian(int side) const { return blocks[side]; }
+};
+
+PlainRow plain_row(const StepProblem& problem, std::span<const double> impulse, int row) {
+  return {problem, row, problem.rhs[row], impulse[row]};
+}
+
+bool is_turned(const StepProblem& problem, int row) {
   const int normal = problem.friction_row[row];
-  if (problem.box_angle_rad.empty() || normal < 0) return axis;
+  return !problem.box_angle_rad.empty() && normal >= 0 && problem.box_angle_rad[normal] != 0;
+}
+
+// Of a turned box with the tangents t1, t2: the first becomes c t1 + s t2, the second c t2 - s t1.
+AxisRow axis_of_row(const StepProblem& problem, std::span<const double> impulse, int row) {
+  const int normal = problem.friction_row[row];
   const Real angle = problem.box_angle_rad[normal];
-  if (angle == 0) return axis;
   const bool first = row == normal + 1;
   const int other = first ? row + 1 : row - 1;
   const Real own = std::cos(angle), share = first ? std::sin(angle) : -std::sin(angle);
-  for (int side = 0; side < 2; ++side) {
-    axis.jacobian[side] = own * axis.jacobian[side] + share * jacobian_block(problem, other, side);
-  }
-  axis.rhs = own * axis.rhs + share * problem.rhs[other];
-  axis.impulse = own * axis.impulse + share * impulse[other];
+  AxisRow axis;
+  for (int side = 0; side < 2; ++side)
+    axis.blocks[side] =
+        own * jacobian_block(problem, row, side) + share * jacobian_block(problem, other, side);
+  axis.rhs = own * problem.rhs[row] + share * problem.rhs[other];
+  axis.impulse = own * impulse[row] + share * impulse[other];
   return axis;
 }
 
 // d = (J M^-1 J^T + C)_rr. A row that nothing can move (d = 0) is measured with d = 1, which keeps the residual zero
 // exactly at solutions.
-Real find_diagonal(const StepProblem& problem, const std::vector<BodyState>& bodies, int row,
-                   const AxisRow& axis) {
+template <class Row>
+Real find_diagonal(const StepProblem& problem, const BodyStates& bodies, int row, const Row& axis) {
   Real diagonal = problem.compliance[row];
   for (int side = 0; side < 2; ++side) {
     const int body = problem.row_body[2 * row + side];
-    if (body >= 0) diagonal += axis.jacobian[side].dot(bodies[body].mass_factor.solve(axis.jacobian[side]));
+    if (body < 0) continue;
+    const Vector6 block = axis.jacobian(side);
+    diagonal += block.dot(bodies.mass_factor[body].solve(block));
   }
   return diagonal == 0 ? 1 : diagonal;
 }
 
 // w of a row or axis.
-Real find_slack(const StepProblem& problem, const std::vector<BodyState>& bodies, int row,
-                const AxisRow& axis) {
+template <class Row>
+Real find_slack(const StepProblem& problem, const BodyStates& bodies, int row, const Row& axis) {
   Real slack = problem.compliance[row] * axis.impulse - axis.rhs;
   for (int side = 0; side < 2; ++side) {
     const int body = problem.row_body[2 * row + side];
-    if (body >= 0) slack += axis.jacobian[side].dot(bodies[body].velocity);
+    if (body >= 0) slack += axis.jacobian(side).dot(bodies.velocity[body]);
   }
   return slack;
 }
@@ -127,8 +225,8 @@ Real find_slack(const StepProblem& problem, const std::vector<BodyState>& bodies
 // the same number without the division, whose cancellation would cost eps |lambda| d. d takes longer than all the rest,
 // and most rows do without: one at a bound whose w pushes it there has no residual, and as d >= C, a w between
 // C (lambda - hi) and C (lambda - lo) is not clamped.
-double find_row_residual(const StepProblem& problem, const std::vector<BodyState>& bodies, int row,
-                         const AxisRow& axis) {
+template <class Row>
+double find_row_residual(const StepProblem& problem, const BodyStates& bodies, int row, const Row& axis) {
   const Real compliance = problem.compliance[row];
   const Real slack = find_slack(problem, bodies, row, axis);
   const Real above_lower = axis.impulse - problem.lower[row], above_upper = axis.impulse - problem.upper[row];
@@ -157,13 +255,13 @@ Vector3 project_on_polar(const Vector3& y, Real mu) {
 
 // d (lambda - P(lambda - w / d)) of one contact, as w + y - P(y) with y = d lambda - w: no difference is left of what is
 // large and cancels. Writes one number a row.
-void find_contact_residual(const StepProblem& problem, const std::vector<BodyState>& bodies,
+void find_contact_residual(const StepProblem& problem, const BodyStates& bodies,
                            std::span<const double> impulse, int normal, std::span<double> residuals) {
   Vector3 lambda = Vector3::Zero(), w = Vector3::Zero();
   Real diagonal = 0;
   for (std::size_t k = 0; k < residuals.size(); ++k) {
     const int row = normal + static_cast<int>(k);
-    const AxisRow axis = axis_of_row(problem, impulse, row);
+    const PlainRow axis = plain_row(problem, impulse, row);
     lambda[k] = axis.impulse;
     w[k] = find_slack(problem, bodies, row, axis);
     diagonal = std::max(diagonal, find_diagonal(problem, bodies, row, axis));
@@ -183,7 +281,7 @@ int count_rows_of_set(const StepProblem& problem, int row) {
 }
 
 // (m)
-std::vector<double> find_residuals(const StepProblem& problem, const std::vector<BodyState>& bodies,
+std::vector<double> find_residuals(const StepProblem& problem, const BodyStates& bodies,
                                    std::span<const double> impulse, Asked asked = {}) {
   std::vector<double> residuals(impulse.size());
   for (int r = 0; r < problem.row_count();) {
@@ -193,7 +291,9 @@ std::vector<double> find_residuals(const StepProblem& problem, const std::vector
       continue;
     }
     if (count == 1) {
-      residuals[r] = find_row_residual(problem, bodies, r, axis_of_row(problem, impulse, r));
+      residuals[r] = is_turned(problem, r)
+                         ? find_row_residual(problem, bodies, r, axis_of_row(problem, impulse, r))
+                         : find_row_residual(problem, bodies, r, plain_row(problem, impulse, r));
     } else {
       find_contact_residual(problem, bodies, impulse, r, std::span(residuals).subspan(r, count));
     }
@@ -219,8 +319,8 @@ double find_velocity_scale(const StepProblem& problem, double largest_free_veloc
   return largest;
 }
 
-void judge_rows(const StepProblem& problem, const std::vector<BodyState>& bodies,
-                std::span<const double> impulse, ResidualReport& report) {
+void judge_rows(const StepProblem& problem, const BodyStates& bodies, std::span<const double> impulse,
+                ResidualReport& report) {
   const std::vector<double> residuals = find_residuals(problem, bodies, impulse);
   for (int r = 0; r < problem.row_count(); ++r) {
     const double residual = residuals[r];
@@ -234,14 +334,14 @@ void judge_rows(const StepProblem& problem, const std::vector<BodyState>& bodies
 
 // 1/2 v^T M v - 1/2 v0^T M v0 is (J^T lambda)^T (v0 + v) / 2 because M (v - v0) = J^T lambda: a sum of small
 // terms in place of the difference of two large ones.
-void judge_energy(const StepProblem& problem, const std::vector<BodyState>& bodies,
-                  std::span<const double> impulse, ResidualReport& report) {
+void judge_energy(const StepProblem& problem, const BodyStates& bodies, std::span<const double> impulse,
+                  ResidualReport& report) {
   Real gain = 0;
   Real kinetic = 0;
   for (int i = 0; i < problem.body_count(); ++i) {
-    const BodyState& body = bodies[i];
-    gain += body.impulse.dot(body.velocity + ConstVector6(&problem.free_velocity[6 * i]).cast<Real>()) / 2;
-    kinetic += body.velocity.dot(ConstMatrix6(&problem.mass[36 * i]).cast<Real>() * body.velocity) / 2;
+    const Vector6& velocity = bodies.velocity[i];
+    gain += bodies.impulse[i].dot(velocity + ConstVector6(&problem.free_velocity[6 * i]).cast<Real>()) / 2;
+    kinetic += velocity.dot(ConstMatrix6(&problem.mass[36 * i]).cast<Real>() * velocity) / 2;
   }
   for (int r = 0; r < problem.row_count(); ++r) gain -= Real(impulse[r]) * problem.rhs[r];
   report.energy_excess_j = static_cast<double>(gain);
@@ -272,10 +372,8 @@ ResidualReport judge(const StepProblem& problem, std::span<const double> impulse
     report_nan(report);
     return report;
   }
-  const std::vector<BodyState> bodies = find_body_states(problem, impulse);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    for (int k = 0; k < 6; ++k) report.velocity[6 * i + k] = static_cast<double>(bodies[i].velocity[k]);
-  }
+  const BodyStates bodies = find_body_states(problem, impulse);
+  write_velocities(bodies, report.velocity);
   judge_rows(problem, bodies, impulse, report);
   const double scale = find_velocity_scale(problem, report.largest_free_velocity_m_per_s);
   report.residual_relative = report.residual_m_per_s == 0 ? 0 : report.residual_m_per_s / scale;
@@ -285,10 +383,12 @@ ResidualReport judge(const StepProblem& problem, std::span<const double> impulse
 }
 
 std::vector<double> row_residuals(const StepProblem& problem, std::span<const double> impulse,
-                                  std::span<const char> asked) {
+                                  std::span<const char> asked, std::span<double> velocity) {
   assert(std::ssize(impulse) == problem.row_count());
   if (!all_finite(impulse)) return std::vector<double>(impulse.size(), kNan);
-  return find_residuals(problem, find_body_states(problem, impulse, asked), impulse, asked);
+  const BodyStates bodies = find_body_states(problem, impulse, asked);
+  if (!velocity.empty()) write_velocities(bodies, velocity);
+  return find_residuals(problem, bodies, impulse, asked);
 }
 
 }  // namespace cleave

@@ -50,8 +50,9 @@ ResidualReport judge(const StepProblem& problem, std::span<const double> impulse
 
 // (m) The residual of every row, or axis of a turned box in the places of its rows; their maximum is that of
 // judge(). All NaN for NaN or infinite impulses. asked: (m) 1 where a row is asked for, the normal row of a contact without a
-// box for all of its rows; others have 0. Empty: all.
+// box for all of its rows; others have 0. Empty: all. velocity: (n, 6), or empty: becomes v on bodies with a row that is asked
+// for, and stays as it is on others.
 std::vector<double> row_residuals(const StepProblem& problem, std::span<const double> impulse,
-                                  std::span<const char> asked = {});
+                                  std::span<const char> asked = {}, std::span<double> velocity = {});
 
 }  // namespace cleave

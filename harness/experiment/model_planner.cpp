@@ -1,7 +1,5 @@
 #include "harness/experiment/model_planner.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,9 +10,6 @@
 
 namespace cleave {
 namespace {
-
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;  // of a symmetric one
 
 // (m) J v0 - b.
 std::vector<double> free_slack(const StepProblem& problem) {
@@ -57,6 +52,16 @@ bool separates(const StepProblem& problem, int row, std::span<const double> slac
   return problem.warm_impulse[row] == 0 && problem.lower[row] == 0 && slack[row] > margin;
 }
 
+bool is_anything_solved(std::span<const RowPlan> plan) {
+  return std::ranges::find(plan, RowPlan::solved) != plan.end();
+}
+
+std::vector<char> rows_at_rest(std::span<const RowPlan> plan) {
+  std::vector<char> is_at_rest(plan.size());
+  std::ranges::transform(plan, is_at_rest.begin(), [](RowPlan row) { return row == RowPlan::at_rest; });
+  return is_at_rest;
+}
+
 void follow_normal_rows(const StepProblem& problem, std::vector<RowPlan>& plan) {
   for (int row = 0; row < problem.row_count(); ++row) {
     const int normal = problem.friction_row[row];
@@ -64,19 +69,17 @@ void follow_normal_rows(const StepProblem& problem, std::vector<RowPlan>& plan) 
   }
 }
 
-double velocity_scale(const StepProblem& problem) {
-  double largest = 1;
-  for (const double velocity : problem.free_velocity) largest = std::max(largest, std::abs(velocity));
-  return largest;
-}
-
 // What the judge finds violated comes back, a friction row with its normal row. Returns how many rows did.
-int bring_back(const StepProblem& problem, std::span<const double> impulse, std::vector<RowPlan>& plan) {
-  if (std::ranges::count(plan, RowPlan::solved) == problem.row_count()) return 0;
-  std::vector<char> is_left_out(plan.size());
-  std::ranges::transform(plan, is_left_out.begin(), [](RowPlan row) { return row != RowPlan::solved; });
-  const std::vector<double> residual = row_residuals(problem, impulse, is_left_out);
-  const double rest_limit = kRestReturn * velocity_scale(problem);
+// judges_rest: rows at rest too.
+int bring_back(const StepProblem& problem, std::span<const double> impulse, bool judges_rest,
+               std::vector<RowPlan>& plan) {
+  std::vector<char> is_asked(plan.size());
+  std::ranges::transform(plan, is_asked.begin(), [judges_rest](RowPlan row) {
+    return row == RowPlan::zero || (judges_rest && row == RowPlan::at_rest);
+  });
+  if (std::ranges::find(is_asked, 1) == is_asked.end()) return 0;
+  const std::vector<double> residual = row_residuals(problem, impulse, is_asked);
+  const double rest_limit = rest_limit_m_per_s(problem);
   int returned = 0;
   const auto back = [&](int row) {
     returned += std::exchange(plan[row], RowPlan::solved) != RowPlan::solved;
@@ -88,25 +91,6 @@ int bring_back(const StepProblem& problem, std::span<const double> impulse, std:
     if (problem.friction_row[row] >= 0) back(problem.friction_row[row]);
   }
   return returned;
-}
-
-// velocity (n, 6) += M^-1 J^T lambda of the rows at rest.
-void add_impulses_at_rest(const StepProblem& problem, std::span<const RowPlan> plan,
-                          std::vector<double>& velocity) {
-  std::vector<double> sum(velocity.size(), 0.0);
-  for (int row = 0; row < problem.row_count(); ++row) {
-    for (int side = 0; plan[row] == RowPlan::at_rest && side < 2; ++side) {
-      const int body = problem.row_body[2 * row + side];
-      for (int k = 0; body >= 0 && k < 6; ++k)
-        sum[6 * body + k] += problem.jacobian[12 * row + 6 * side + k] * problem.warm_impulse[row];
-    }
-  }
-  for (int body = 0; body < problem.body_count(); ++body) {
-    const Eigen::Map<const Vector6> impulse(&sum[6 * body]);
-    if (impulse.isZero(0)) continue;
-    const Eigen::Map<const Matrix6> mass(&problem.mass[36 * body]);
-    Eigen::Map<Vector6>(&velocity[6 * body]) += mass.llt().solve(impulse);
-  }
 }
 
 void add(double& sum, double value) { sum = std::isnan(sum) ? value : sum + value; }
@@ -137,36 +121,56 @@ void add_serial_time(StageTimes& times, double serial_ms) {
 
 }  // namespace
 
-std::vector<RowPlan> ModelPlanner::plan(const StepProblem& problem) {
+// Of rows with impulse 0, slacks are looked at where islands move.
+void ModelPlanner::leave_out_separating(const StepProblem& problem, std::vector<RowPlan>& plan) const {
   const std::vector<double> slack = free_slack(problem), speed = violated_speed(problem, slack);
-  const std::vector<char>& is_at_rest = rest_.find(problem);
-  std::vector<RowPlan> plan(problem.rhs.size(), RowPlan::solved);
   std::vector<char> loaded(problem.rhs.size(), 0);
   for (int row = 0; row < problem.row_count(); ++row) {
     const int normal = problem.friction_row[row];
     if (normal < 0) continue;
     if (is_plain(problem, normal) && problem.lower[row] == 0 && problem.upper[row] == 0) {
-      plan[row] = RowPlan::zero;
+      if (plan[row] == RowPlan::solved) plan[row] = RowPlan::zero;
     } else {
       loaded[normal] = 1;
     }
   }
   for (int row = 0; row < problem.row_count(); ++row) {
-    if (is_at_rest[row]) {
-      plan[row] = RowPlan::at_rest;
-    } else if (problem.row_kind[row] == RowKind::normal && !loaded[row] && is_plain(problem, row) &&
-               separates(problem, row, slack, speed)) {
+    if (plan[row] == RowPlan::solved && problem.row_kind[row] == RowKind::normal && !loaded[row] &&
+        is_plain(problem, row) && separates(problem, row, slack, speed))
       plan[row] = RowPlan::zero;
-    }
   }
+}
+
+std::vector<RowPlan> ModelPlanner::plan(const StepProblem& problem) {
+  std::vector<RowPlan> plan(problem.rhs.size());
+  std::ranges::transform(rest_.find(problem), plan.begin(), [](char is_at_rest) {
+    return is_at_rest != 0 ? RowPlan::at_rest : RowPlan::solved;
+  });
+  if (is_anything_solved(plan)) leave_out_separating(problem, plan);
   return plan;
 }
 
+// Where no row is left to solve the solver gets no bodies either.
 void ModelPlanner::reduce(const StepProblem& problem) {
+  if (is_plan_given_) rest_.take(problem, rows_at_rest(plan_));
   is_solved_.resize(plan_.size());
   std::ranges::transform(plan_, is_solved_.begin(), [](RowPlan row) { return row == RowPlan::solved; });
-  copy_rows(problem, is_solved_, reduced_, new_row_);
-  add_impulses_at_rest(problem, plan_, reduced_.free_velocity);
+  if (is_anything_solved(plan_)) {
+    copy_rows(problem, is_solved_, reduced_, new_row_);
+    reduced_.free_velocity = rest_.velocity();
+  } else {
+    reduced_ = {};
+    reduced_.h_s = problem.h_s;
+  }
+}
+
+SolveSummary ModelPlanner::solve_reduced(StepSolver& solver, const Parts& parts) {
+  if (reduced_.body_count() > 0) return solver.solve(reduced_, parts, found_);
+  Parts none;
+  none.kernel = parts.kernel;
+  const SolveSummary summary = solver.solve(reduced_, none, found_);
+  found_.velocity = rest_.velocity();
+  return summary;
 }
 
 SolveSummary ModelPlanner::solve_pass(StepSolver& solver, const StepProblem& problem, const Parts& parts,
@@ -179,7 +183,7 @@ SolveSummary ModelPlanner::solve_pass(StepSolver& solver, const StepProblem& pro
   keep_rows(solution.impulse, is_solved_, found_.impulse);
   found_.velocity = solution.velocity;
   double own_ms = watch.lap_ms();
-  SolveSummary summary = solver.solve(reduced_, parts, found_);
+  SolveSummary summary = solve_reduced(solver, parts);
   watch.lap_ms();
   solution.velocity = found_.velocity;
   for (int row = 0; row < problem.row_count(); ++row) {
@@ -196,11 +200,12 @@ SolveSummary ModelPlanner::solve_pass(StepSolver& solver, const StepProblem& pro
 SolveSummary ModelPlanner::solve(StepSolver& solver, const StepProblem& problem, const Parts& parts,
                                  Solution& solution, ModelCounts& counts) {
   Stopwatch watch;
-  std::vector<RowPlan> first = plan(problem);
-  const std::ptrdiff_t left_out = problem.row_count() - std::ranges::count(first, RowPlan::solved);
-  if (left_out < kLeastShare * problem.row_count()) std::ranges::fill(first, RowPlan::solved);
+  plan_ = plan(problem);
+  const std::ptrdiff_t left_out = problem.row_count() - std::ranges::count(plan_, RowPlan::solved);
+  if (left_out < kLeastShare * problem.row_count()) std::ranges::fill(plan_, RowPlan::solved);
   const double plan_ms = watch.lap_ms();
-  SolveSummary summary = solve(solver, problem, parts, std::move(first), solution, counts);
+  is_plan_given_ = false;
+  SolveSummary summary = solve_planned(solver, problem, parts, solution, counts);
   add_serial_time(summary.times, plan_ms);
   return summary;
 }
@@ -208,13 +213,19 @@ SolveSummary ModelPlanner::solve(StepSolver& solver, const StepProblem& problem,
 SolveSummary ModelPlanner::solve(StepSolver& solver, const StepProblem& problem, const Parts& parts,
                                  std::vector<RowPlan> plan, Solution& solution, ModelCounts& counts) {
   plan_ = std::move(plan);
+  is_plan_given_ = true;
+  return solve_planned(solver, problem, parts, solution, counts);
+}
+
+SolveSummary ModelPlanner::solve_planned(StepSolver& solver, const StepProblem& problem, const Parts& parts,
+                                         Solution& solution, ModelCounts& counts) {
   follow_normal_rows(problem, plan_);
   counts = {static_cast<int>(std::ranges::count(plan_, RowPlan::zero)),
             static_cast<int>(std::ranges::count(plan_, RowPlan::at_rest)), 0, 1};
   SolveSummary summary = solve_pass(solver, problem, parts, solution);
   while (has_result(summary.status)) {
     Stopwatch watch;
-    int returned = bring_back(problem, solution.impulse, plan_);
+    int returned = bring_back(problem, solution.impulse, is_plan_given_, plan_);
     add_serial_time(summary.times, watch.lap_ms());
     if (returned == 0) break;
     if (counts.passes == kMostPasses - 1) {

@@ -9,14 +9,14 @@
 // It only decides how often rows come back, never what the answer is.
 //
 // Left out with the impulse of the step before are
-//     islands at rest (rest_islands.h)
+//     islands at rest (rest_islands.h), which the judge has looked at before: no other island changes anything on them
 // Islands do not feel each other, so that all others are solved as before. Islands apart and islands of bilateral rows
 // need no plan of their own: kernels factor an island apart from others by themselves, and keep the factor of one in
 // which no row changed between two iterations.
 //
-// After a solve the judge (solver/residual.h) looks at all rows. A row left out with impulse 0 comes back where its
-// residual is not exactly 0, one at rest where it is above kRestReturn, and the step is solved again from what was found. Where
-// none comes back the full problem has the residual of the reduced one, or kRestReturn: leaving out costs no accuracy.
+// After a solve the judge (solver/residual.h) looks at the other rows that were left out. One comes back where its residual is
+// not exactly 0, and the step is solved again from what was found. Where none comes back the full problem has the residual of
+// the reduced one, or that of islands at rest: leaving out costs no accuracy.
 // Turned boxes, cones and Coulomb's law keep the rows of contacts that separate.
 #pragma once
 
@@ -29,10 +29,6 @@
 namespace cleave {
 
 enum class RowPlan : char { solved, zero, at_rest };
-
-// The judge counts more exactly than rest_islands.h; what rounding makes of the difference brings no island back. Over max(1,
-// largest |entry| of v0), m/s.
-inline constexpr double kRestReturn = 10 * kRestLimit;
 
 inline constexpr int kMostPasses = 4;
 
@@ -56,8 +52,8 @@ class ModelPlanner {
   SolveSummary solve(StepSolver& solver, const StepProblem& problem, const Parts& parts, Solution& solution,
                      ModelCounts& counts);
 
-  // The same with a given plan (m). Friction rows follow their normal row out and take it along when they come back. After
-  // kMostPasses - 1 passes all rows come back.
+  // The same with a given plan (m), of which the judge looks at the rows at rest too, after the solve. Friction rows follow
+  // their normal row out and take it along when they come back. After kMostPasses - 1 passes all rows come back.
   SolveSummary solve(StepSolver& solver, const StepProblem& problem, const Parts& parts,
                      std::vector<RowPlan> plan, Solution& solution, ModelCounts& counts);
 
@@ -65,15 +61,21 @@ class ModelPlanner {
   std::vector<RowPlan> plan(const StepProblem& problem);
 
  private:
+  void leave_out_separating(const StepProblem& problem, std::vector<RowPlan>& plan) const;
   void reduce(const StepProblem& problem);
+  SolveSummary solve_reduced(StepSolver& solver, const Parts& parts);
   SolveSummary solve_pass(StepSolver& solver, const StepProblem& problem, const Parts& parts,
                           Solution& solution);
+
+  SolveSummary solve_planned(StepSolver& solver, const StepProblem& problem, const Parts& parts,
+                             Solution& solution, ModelCounts& counts);
 
   RestIslands rest_;
   std::vector<RowPlan> plan_;
   std::vector<char> is_solved_;  // (m) whether plan_ says so
+  bool is_plan_given_ = false;
   StepProblem
-      reduced_;  // the rows that are solved, with all bodies; free velocities have the impulses at rest in them
+      reduced_;  // the rows that are solved, with all bodies and the velocities of rest_; empty without rows
   std::vector<int> new_row_;  // (m) in reduced_
   Solution found_;
 };

@@ -1,9 +1,19 @@
 #include "harness/experiment/rest_islands.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <utility>
+
+#include "solver/residual.h"
 
 namespace cleave {
+
+double rest_limit_m_per_s(const StepProblem& problem) {
+  double largest = 1;
+  for (const double velocity : problem.free_velocity) largest = std::max(largest, std::abs(velocity));
+  return 1e-11 * largest;
+}
 
 int RestIslands::root_of(int body) {
   while (parent_[body] != body) body = parent_[body] = parent_[parent_[body]];
@@ -13,39 +23,79 @@ int RestIslands::root_of(int body) {
 void RestIslands::join_bodies(const StepProblem& problem) {
   parent_.resize(problem.body_count());
   std::iota(parent_.begin(), parent_.end(), 0);
+  int last_a = -1, last_b = -1;  // rows of a pair mostly follow each other
   for (int row = 0; row < problem.row_count(); ++row) {
     const int a = problem.row_body[2 * row], b = problem.row_body[2 * row + 1];
-    if (a >= 0 && b >= 0) parent_[root_of(a)] = root_of(b);
+    if (a >= 0 && b >= 0 && (a != last_a || b != last_b)) parent_[root_of(a)] = root_of(b);
+    last_a = a;
+    last_b = b;
+  }
+  for (int body = 0; body < problem.body_count(); ++body) parent_[body] = root_of(body);
+}
+
+// One of each island; it is never a friction row, whose normal row comes before it.
+void RestIslands::ask_for_first_rows(const StepProblem& problem) {
+  is_at_rest_.resize(problem.rhs.size());
+  is_moving_.assign(problem.body_count(), 1);
+  for (int row = 0; row < problem.row_count(); ++row) {
+    char& is_new = is_moving_[island_of(problem, row)];
+    is_at_rest_[row] = is_new;
+    is_new = 0;
   }
 }
 
-void RestIslands::mark_moving(const StepProblem& problem) {
-  v_.resize(problem.free_velocity.size());
-  w_.resize(problem.rhs.size());
-  step_.velocity(problem.warm_impulse, v_);
-  step_.slack(v_, problem.warm_impulse, w_);
-  impulse_ = problem.warm_impulse;
-  step_.set().to_axes(impulse_);
-  step_.set().to_axes(w_);
-  is_moving_.assign(problem.body_count(), 0);
-  const double limit = kRestLimit * step_.velocity_scale();
-  for (const RowGroup& group : step_.groups()) {
-    const int first = group.first_row, last = first + group.row_count;
-    // Where it is no number, the island is not at rest.
-    if (!(step_.set().residual(first, last, step_.diagonal(), impulse_, w_) <= limit))
-      is_moving_[root_of(group.body_a)] = 1;
-  }
+void RestIslands::ask_for_islands_at_rest(const StepProblem& problem) {
+  is_at_rest_.resize(problem.rhs.size());
+  for (int row = 0; row < problem.row_count(); ++row)
+    is_at_rest_[row] = is_moving_[island_of(problem, row)] == 0;
 }
 
+// Where a residual is no number, the island is not at rest. Returns whether any moves.
+bool RestIslands::mark_moving(const StepProblem& problem) {
+  const double limit = rest_limit_m_per_s(problem);
+  const std::vector<double> residual = row_residuals(problem, problem.warm_impulse, is_at_rest_, velocity_);
+  bool any = false;
+  for (int row = 0; row < problem.row_count(); ++row) {
+    if (residual[row] <= limit) continue;
+    is_moving_[island_of(problem, row)] = 1;
+    any = true;
+  }
+  return any;
+}
+
+void RestIslands::restore_moving(const StepProblem& problem) {
+  for (int body = 0; body < problem.body_count(); ++body)
+    if (is_moving_[parent_[body]] != 0)
+      std::copy_n(&problem.free_velocity[6 * body], 6, &velocity_[6 * body]);
+}
+
+void RestIslands::take(const StepProblem& problem, std::vector<char> is_at_rest) {
+  is_at_rest_ = std::move(is_at_rest);
+  velocity_ = problem.free_velocity;
+  std::vector<double> impulse = problem.warm_impulse;
+  for (int row = 0; row < problem.row_count(); ++row)
+    if (is_at_rest_[row] == 0) impulse[row] = 0;
+  row_residuals(problem, impulse, is_at_rest_, velocity_);
+}
+
+// Nearly every island that moves is told by its first row, so that the judge need not look at all of it; where something rested in
+// the step before it does so at once.
 const std::vector<char>& RestIslands::find(const StepProblem& problem) {
-  is_at_rest_.assign(problem.rhs.size(), 0);
-  step_.prepare(problem);
-  if (!step_.set().cones().empty()) return is_at_rest_;
+  velocity_ = problem.free_velocity;
   join_bodies(problem);
-  mark_moving(problem);
-  for (const RowGroup& group : step_.groups())
-    if (!is_moving_[root_of(group.body_a)])
-      std::fill_n(is_at_rest_.begin() + group.first_row, group.row_count, char(1));
+  if (has_rested_) {
+    is_moving_.assign(problem.body_count(), 0);
+  } else {
+    ask_for_first_rows(problem);
+    mark_moving(problem);
+  }
+  ask_for_islands_at_rest(problem);
+  has_rested_ = std::ranges::find(is_at_rest_, 1) != is_at_rest_.end();
+  if (has_rested_ && mark_moving(problem)) {
+    ask_for_islands_at_rest(problem);
+    has_rested_ = std::ranges::find(is_at_rest_, 1) != is_at_rest_.end();
+  }
+  restore_moving(problem);
   return is_at_rest_;
 }
 

@@ -1,30 +1,42 @@
-// Islands at rest: bodies that rows join, on which the impulses of the step before still solve every row.
+// Islands at rest: bodies that rows join, on which the impulses of the step before still solve every row, as the judge
+// (solver/residual.h) finds.
 #pragma once
 
 #include <vector>
 
-#include "solver/prepared_step.h"
+#include "solver/step_problem.h"
 
 namespace cleave {
 
-// Residual of an island at rest over max(1, largest |entry| of v0), m/s: what solvers aim at.
-inline constexpr double kRestLimit = 1e-11;
+// The residual that an island at rest may have: 1e-11 max(1, largest |entry| of v0), m/s, what solvers aim at.
+double rest_limit_m_per_s(const StepProblem& problem);
 
+// Keeps its scratch from one problem to the next.
 class RestIslands {
  public:
-  // (m) 1 where the row's island is at rest. None is where a contact has a cone or Coulomb's law. Scratch is kept from one
-  // problem to the next.
+  // (m) 1 where the row's island is at rest.
   const std::vector<char>& find(const StepProblem& problem);
+  // Takes the rows that are 1 (m) to be at rest, whether they are or not.
+  void take(const StepProblem& problem, std::vector<char> is_at_rest);
+
+  // (n, 6) Of the last problem: v0 + M^-1 J^T lambda with the impulses of the rows at rest.
+  const std::vector<double>& velocity() const { return velocity_; }
 
  private:
   void join_bodies(const StepProblem& problem);
-  void mark_moving(const StepProblem& problem);
+  void ask_for_first_rows(const StepProblem& problem);
+  void ask_for_islands_at_rest(const StepProblem& problem);
+  bool mark_moving(const StepProblem& problem);
   int root_of(int body);
+  int island_of(const StepProblem& problem, int row) const { return parent_[problem.row_body[2 * row]]; }
 
-  PreparedStep step_;
-  std::vector<char> is_at_rest_, is_moving_;  // (m), (n) of the root of an island
-  std::vector<int> parent_;                   // (n)
-  std::vector<double> impulse_, v_, w_;
+  void restore_moving(const StepProblem& problem);
+
+  std::vector<char> is_at_rest_;  // (m) first what the judge is asked for
+  std::vector<double> velocity_;  // (n, 6)
+  bool has_rested_ = false;       // anything, in the last problem
+  std::vector<char> is_moving_;   // (n) of the root of an island
+  std::vector<int> parent_;       // (n) in the end the root
 };
 
 }  // namespace cleave

@@ -3,13 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <string>
 
+#include "harness/experiment/algorithms.h"
+#include "harness/experiment/chosen_kernel.h"
+#include "harness/experiment/friction_cone.h"
 #include "harness/experiment/model_planner.h"
 #include "harness/experiment/options.h"
 #include "harness/experiment/problem_graph.h"
+#include "solver/registry.h"
 #include "tests/harness/world_stepper.h"
 
 namespace cleave {
@@ -201,6 +206,75 @@ TEST(ModelPlanner, TurnedBoxesRest) {
   problem.warm_impulse =
       solve_with(problem, std::vector<RowPlan>(problem.rhs.size(), RowPlan::solved)).solution.impulse;
   EXPECT_EQ(std::ranges::count(ModelPlanner().plan(problem), RowPlan::at_rest), problem.row_count());
+}
+
+// The answer of a pile at rest as impulses of the step before, with the sets that the friction model makes of its contacts.
+StepProblem resting_pile(ContactSet set) {
+  WorldStepper world = stepper_of({{{"scene", "rock_pile"}, {"bodies", "30"}}, 0});
+  world.steps(90);
+  StepProblem problem = world.problem();
+  if (set != ContactSet::box) {
+    EXPECT_EQ(turn_contacts(set, problem), "");
+  }
+  problem.warm_impulse =
+      solve_with(problem, std::vector<RowPlan>(problem.rhs.size(), RowPlan::solved)).solution.impulse;
+  return problem;
+}
+
+TEST(ModelPlanner, ConesRest) {
+  for (const ContactSet set : {ContactSet::cone, ContactSet::coulomb}) {
+    const StepProblem problem = resting_pile(set);
+    const std::vector<RowPlan> plan = ModelPlanner().plan(problem);
+    EXPECT_EQ(std::ranges::count(plan, RowPlan::at_rest), problem.row_count());
+    expect_full_answer(problem, solve_with(problem, plan));
+  }
+}
+
+// Whatever the solver, exact or not: with all at rest it is left nothing to do, on any number of threads.
+TEST(ModelPlanner, EverySolverTakesAStepInWhichAllRests) {
+  const StepProblem problem = resting_pile(ContactSet::box);
+  const ResidualReport report = judge(problem, problem.warm_impulse);
+  std::vector<std::string> names = all_solver_names();
+  std::ranges::copy(chosen_kernel_solvers(), std::back_inserter(names));
+  for (const std::string& name : names) {
+    SolveOptions options;
+    options.threads = 2;
+    const std::unique_ptr<StepSolver> solver = make_solver(read_named("solver", name), options, {});
+    Solution solution{problem.warm_impulse, problem.free_velocity};
+    ModelCounts counts;
+    const std::vector<int> part_of_body = one_part(problem);
+    Parts parts(part_of_body);
+    parts.kernel = "schur-rows";
+    const SolveSummary summary = ModelPlanner().solve(*solver, problem, parts, solution, counts);
+    if (name.ends_with(":chosen")) {
+      EXPECT_EQ(summary.kernel, parts.kernel) << name;
+    }
+    EXPECT_EQ(summary.status, SolveStatus::ok) << name << ": " << summary.message;
+    EXPECT_EQ(counts.rows_at_rest, problem.row_count()) << name;
+    EXPECT_EQ(counts.passes, 1) << name;
+    EXPECT_EQ(solution.impulse, problem.warm_impulse) << name;
+    EXPECT_EQ(solution.velocity, report.velocity) << name;
+  }
+}
+
+// One solver through steps in which first one island moves, then none, then all: what it carries from a step to the next fits
+// no bodies as well as all of them.
+TEST(ModelPlanner, ASolverGoesFromRestToMotionAndBack) {
+  const StepProblem resting = resting_pile(ContactSet::box);
+  StepProblem pushed = resting, moving = resting;
+  pushed.free_velocity[6 * resting.row_body[0]] += 0.5;
+  moving.warm_impulse.assign(resting.rhs.size(), 0.0);
+  SolveOptions options;
+  options.session = true;
+  const std::unique_ptr<StepSolver> solver = make_step_solver("exact", options);
+  ModelPlanner planner;
+  const StepProblem* const steps[] = {&pushed, &resting, &moving, &resting, &resting, &pushed};
+  for (const StepProblem* problem : steps) {
+    Solved solved{{problem->warm_impulse, problem->free_velocity}, {}, {}};
+    solved.summary = planner.solve(*solver, *problem, one_part(*problem), solved.solution, solved.counts);
+    expect_full_answer(*problem, solved);
+    EXPECT_EQ(solved.counts.rows_at_rest == problem->row_count(), problem == &resting);
+  }
 }
 
 // A contact that parts faster than anything can push is left out; one that parts slowly beside a violated row stays.

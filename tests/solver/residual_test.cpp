@@ -111,6 +111,71 @@ TEST(ResidualTest, EveryRowAgreesWithDenseRecomputation) {
   EXPECT_GT(rows_at_bounds, 300);
 }
 
+// Each entry of a mass beside its diagonal may be all that there is.
+TEST(ResidualTest, MassesOfAnyPatternAgreeWithDenseRecomputation) {
+  const StepProblem problem = make_small_problem(1);
+  SeededRandom random(1);
+  const std::vector<double> impulse = random_impulse(random, problem.row_count());
+  const int body = problem.row_body[0];
+  for (int i = 1; i < 6; ++i) {
+    for (int j = 0; j < i; ++j) {
+      for (const bool is_alone : {true, false}) {
+        StepProblem coupled = problem;
+        double* mass = &coupled.mass[36 * body];
+        if (is_alone) std::fill_n(mass, 36, 0.0);
+        for (int k = 0; k < 6; ++k) mass[7 * k] = 5 + k;
+        mass[6 * i + j] = mass[6 * j + i] = 2;
+        const DenseJudge dense(coupled);
+        const std::vector<double> residuals = row_residuals(coupled, impulse);
+        for (int r = 0; r < problem.row_count(); ++r)
+          EXPECT_NEAR(residuals[r], dense.row_residual(coupled, impulse, r), 1e-11) << i << " " << j;
+      }
+    }
+  }
+}
+
+// Of some rows: their residuals and the velocities of their bodies are those of the whole, and all others are left alone.
+TEST(ResidualTest, OnlyWhatIsAskedForIsWritten) {
+  int bodies_left_alone = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const StepProblem problem = make_small_problem(seed);
+    SeededRandom random(seed);
+    const std::vector<double> impulse = random_impulse(random, problem.row_count());
+    const std::vector<double> all_residuals = row_residuals(problem, impulse),
+                              all_velocities = judge(problem, impulse).velocity;
+    std::vector<char> asked(problem.row_count(), 0), is_needed(problem.body_count(), 0);
+    for (int row = 0; row < problem.row_count(); ++row) {
+      asked[row] = random.chance(0.3);
+      for (const int body : {problem.row_body[2 * row], problem.row_body[2 * row + 1]})
+        if (asked[row] && body >= 0) is_needed[body] = 1;
+    }
+    std::vector<double> velocity(problem.free_velocity.size(), 7.0);
+    const std::vector<double> residuals = row_residuals(problem, impulse, asked, velocity);
+    for (int row = 0; row < problem.row_count(); ++row)
+      EXPECT_EQ(residuals[row], asked[row] ? all_residuals[row] : 0) << "seed " << seed << " row " << row;
+    for (std::size_t k = 0; k < velocity.size(); ++k)
+      EXPECT_EQ(velocity[k], is_needed[k / 6] ? all_velocities[k] : 7) << "seed " << seed << " entry " << k;
+    bodies_left_alone += static_cast<int>(std::ranges::count(is_needed, 0));
+  }
+  EXPECT_GT(bodies_left_alone, 100);
+}
+
+TEST(ResidualTest, MassThatIsNotPositiveDefiniteIsNeverExact) {
+  StepProblem problem = make_small_problem(0);
+  const std::vector<double> impulse = solve_by_enumeration(problem).impulse;
+  ASSERT_TRUE(judge(problem, impulse).exact);
+  for (const double entry : {0.0, -1.0}) {
+    for (int k = 0; k < 6; ++k) {
+      StepProblem wrong = problem;
+      const int body = problem.row_body[0];
+      wrong.mass[36 * body + 7 * k] = entry;
+      const ResidualReport report = judge(wrong, impulse);
+      EXPECT_FALSE(report.exact) << entry << " at " << k;
+      EXPECT_TRUE(std::isnan(report.velocity[6 * body])) << entry << " at " << k;
+    }
+  }
+}
+
 TEST(ResidualTest, EnergyAgreesWithDenseRecomputation) {
   for (int seed = 0; seed < kSeeds; ++seed) {
     const StepProblem problem = make_small_problem(seed);
