@@ -30,8 +30,8 @@ bool all_finite(std::span<const double> values) {
 // all between moving and turning.
 class MassFactor {
  public:
-  MassFactor() = default;
-  explicit MassFactor(const double* mass);  // (6, 6)
+  MassFactor() {}                    // of nothing yet; its numbers are not worth setting to 0
+  void compute(const double* mass);  // (6, 6)
 
   // M^-1 f; NaN where M is not positive definite.
   Vector6 solve(Vector6 f) const;
@@ -39,10 +39,11 @@ class MassFactor {
  private:
   Real l_[6][6];
   int first_[6];  // column of the first entry of a row that is not zero
-  bool is_positive_ = true;
+  bool is_positive_ = false;
 };
 
-MassFactor::MassFactor(const double* mass) {
+void MassFactor::compute(const double* mass) {
+  is_positive_ = true;
   for (int i = 0; i < 6; ++i) {
     const double* row = mass + 6 * i;
     first_[i] = static_cast<int>(std::find_if(row, row + i, [](double entry) { return entry != 0; }) - row);
@@ -140,7 +141,7 @@ BodyStates find_body_states(const StepProblem& problem, std::span<const double> 
   }
   for (int i = 0; i < problem.body_count(); ++i) {
     if (!bodies.is_needed[i]) continue;
-    bodies.mass_factor[i] = MassFactor(&problem.mass[36 * i]);
+    bodies.mass_factor[i].compute(&problem.mass[36 * i]);
     bodies.velocity[i] = ConstVector6(&problem.free_velocity[6 * i]).cast<Real>() +
                          bodies.mass_factor[i].solve(bodies.impulse[i]);
   }

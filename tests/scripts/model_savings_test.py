@@ -1,21 +1,24 @@
 """scripts/model_savings: what is made of its rows, and the command with a stand-in for the program."""
+import collections
 import csv
+import tomllib
 import unittest
 
 from stand_in import NOTES_ITS_CALL, StandInCase
+from synthetic import ROOT
 
-from cleave_scripts.measurements.model_savings import CASES, savings
+from cleave_scripts.measurements.model_savings import CASES, savings, standing_tower
 
 STAND_IN = NOTES_ITS_CALL + """from synthetic import write_steps
 write_steps(pathlib.Path(given["--out"]), [
     dict(seed=1, scene=given["--scene"], bodies=9, mu=given.get("--mu", 0.5), step=step, rows=60 * step, model=given["--model"], model_rows_left_out=6,
          model_rows_at_rest=3, model_rows_returned=0, model_passes=1, velocity_spread_m_per_s=1e-12, t_s_ms=4, status="ok")
-    for step in range(3)])
+    for step in (0, 1, 2, 299, 300, 3000, 16000)])
 """
 
 
 def row(model, step, t_s_ms, left_out=0, spread=0.0, rows=100):
-    return {"scene": "s", "bodies": "9", "mu": "0.5", "model": model, "step": str(step), "rows": str(rows), "t_s_ms": str(t_s_ms),
+    return {"case": "c", "bodies": "9", "mu": "0.5", "model": model, "step": str(step), "rows": str(rows), "t_s_ms": str(t_s_ms),
             "model_rows_left_out": str(left_out), "model_rows_at_rest": "10", "model_rows_returned": "1", "velocity_spread_m_per_s": str(spread)}
 
 
@@ -46,9 +49,17 @@ class ModelSavingsTest(StandInCase):
         self.assertIn("--model auto", calls[1])
         with open(self.directory / "out" / "model_savings.csv", newline="") as file:
             rows = list(csv.DictReader(file))
-        self.assertEqual(len(rows), len(calls) * 2)  # the first step has no constraint
+        at_rest = {"log tower at rest": 3, "chain drop at rest": 1, "chain drop, heaped": 2}  # steps from the case's first on
+        self.assertEqual(collections.Counter(line["case"] for line in rows),
+                         {case: 2 * 2 * at_rest.get(case, 6) for case in CASES})  # the first step has no constraint
+        self.assertIn("--steps 600 --measure-every 6", calls[2 * list(CASES).index("log tower at rest")])
         self.assertEqual(len(savings(rows)), len(CASES))
         self.assertEqual({line["round"] for line in rows}, {"1", "2"})
+
+    def test_the_standing_tower_is_the_tower_without_its_events(self):
+        tower = tomllib.loads((ROOT / "scenarios" / "files" / "log_tower.toml").read_text())
+        self.assertTrue(tower.pop("event"))
+        self.assertEqual(tomllib.loads(standing_tower()), tower)
 
     def test_options(self):
         self.check_refused((("--rounds", 0), "--rounds is '0'"), (("--steps", 0), "--steps is '0'"))

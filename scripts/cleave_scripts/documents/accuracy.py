@@ -89,10 +89,10 @@ def iterative_partitions(stored):
 
 def model_savings(stored):
     """--model auto against full."""
-    found = savings_of.savings(need(stored.table(*MODEL), "rows that can matter", "model_passes"))
-    lines = [[f"{scene.replace('_', ' ')}, {bodies} bodies, mu {float(mu):g}", text.number(of.full_ms), f"{of.ratio:.2f}",
+    found = savings_of.savings(need(stored.table(*MODEL), "rows that can matter", "case"))
+    lines = [[f"{case}, {bodies} bodies, mu {float(mu):g}", text.number(of.full_ms), f"{of.ratio:.2f}",
               f"{of.least:.2f} to {of.most:.2f}", *(f"{100 * share:.1f} %" for share in (of.left_out, of.at_rest, of.returned)),
-              text.number(of.largest_difference_m_per_s)] for (scene, bodies, mu), of in found.items()]
+              text.number(of.largest_difference_m_per_s)] for (case, bodies, mu), of in found.items()]
     return (f"`exact`, one thread (`{MODEL[1]}`; {stored.origin(MODEL[0])}): mean t_s with every row, that of `auto` as a multiple of it, the least and most of "
             "such a ratio over steps, shares of the rows that were left out, at rest and brought back, and the largest difference of a "
             "velocity from that of the solve which moved the scene:\n\n" +
