@@ -21,7 +21,7 @@ extern const char* const kShippedCalibration;  // calibration.toml
 
 namespace {
 
-constexpr const char* kSchema = "cleave-calibration-2";
+constexpr const char* kSchema = "cleave-calibration-3";
 constexpr const char* kThreads = ".threads-";
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kAtLeastZero{0, kInfinity}, kAnyNumber{-kInfinity, kInfinity};
@@ -30,8 +30,9 @@ constexpr Range kAtLeastZero{0, kInfinity}, kAnyNumber{-kInfinity, kInfinity};
 template <class Cost, class Visitor>
 void visit_numbers(Cost& cost, Visitor&& visit) {
   visit("factorizations_constant", cost.factorizations.constant, kAnyNumber);
-  visit("factorizations_per_log_row", cost.factorizations.per_log_row, kAnyNumber);
+  visit("factorizations_per_log_body", cost.factorizations.per_log_body, kAnyNumber);
   visit("factorizations_per_degree", cost.factorizations.per_degree, kAnyNumber);
+  visit("factorizations_per_mass_spread", cost.factorizations.per_mass_spread, kAnyNumber);
   visit("factorizations_most", cost.factorizations.most, Range{1, kInfinity});
   visit("active_share", cost.active_share, Range{0, 1});
   for (int t = 0; t < kCostTerms; ++t) visit(cost_terms()[t].name, cost.cost[t], kAtLeastZero);

@@ -1,5 +1,6 @@
 #include "partition/cost_features.h"
 
+#include <cmath>
 #include <numeric>
 
 namespace cleave {
@@ -31,18 +32,31 @@ void add_column(const EliminatedColumn& column, PartCost& part) {
   part.entries += 36.0 * (1 + column.below);
 }
 
+double mass_spread_of(const BodyGraph& graph) {
+  double mean = 0, square = 0;
+  const int n = graph.body_count();
+  for (int body = 0; body < n; ++body) mean += std::log(graph.mass_kg(body)) / n;
+  for (int body = 0; body < n; ++body) square += std::pow(std::log(graph.mass_kg(body)) - mean, 2) / n;
+  return std::sqrt(square);
+}
+
 }  // namespace
 
 std::span<const char* const> cost_kernel_names() { return kNames; }
 
 CostCounter::CostCounter(const BodyGraph& graph, CostKernel kernel, double active_share)
-    : graph_(graph), kernel_(kernel), active_share_(active_share), eliminator_(graph) {}
+    : graph_(graph),
+      kernel_(kernel),
+      active_share_(active_share),
+      mass_spread_(mass_spread_of(graph)),
+      eliminator_(graph) {}
 
 CostFeatures CostCounter::count(std::span<const int> part_of_body, int part_count) {
   CostFeatures features;
   features.kernel = kernel_;
   features.bodies = graph_.body_count();
   features.edges = graph_.edge_count();
+  features.mass_spread = mass_spread_;
   if (kernel_ == CostKernel::schur_rows) {
     count_parts(part_of_body, part_count, features);
   } else if (kernel_ == CostKernel::schur_bodies) {

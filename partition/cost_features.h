@@ -40,6 +40,7 @@ struct CostFeatures {
   CostKernel kernel = CostKernel::schur_rows;
   std::vector<PartCost> parts;    // of monolithic one
   int bodies = 0, edges = 0;      // of the graph
+  double mass_spread = 0;         // standard deviation of ln(mass), of its bodies
   int rows = 0;                   // of the step
   int cut_rows = 0;               // 0 for monolithic
   int cover_bodies = 0;           // of the vertex cover that schur-bodies takes; 0 for others
@@ -68,7 +69,7 @@ class CostCounter {
 
   const BodyGraph& graph_;
   const CostKernel kernel_;
-  const double active_share_;
+  const double active_share_, mass_spread_;
   Eliminator eliminator_;
   std::vector<double> sides_;  // scratch: by column
 };

@@ -49,6 +49,8 @@ constexpr CostTerm kTerms[] = {
      [](const CostFeatures& f, int) { return f.interface_flops; }},
     {"ns_per_entry", "substituting, an entry of a factor and pass", 1e-6, true, Group::substitution,
      [](const CostFeatures& f, int) { return sum(f, &PartCost::entries) + f.interface_entries; }},
+    {"ns_per_body", "predicting, a body", 1e-6, false, Group::sweeps_and_assembly,
+     [](const CostFeatures& f, int) { return static_cast<double>(f.bodies); }},
 };
 
 }  // namespace
@@ -64,18 +66,20 @@ std::array<double, kCostTerms> unit_costs_ms(const CostFeatures& features, int t
   return costs;
 }
 
-std::array<double, 3> ExpectedFactorizations::terms(const CostFeatures& features) {
-  return {1, std::log(std::max(features.rows, 1)),
-          static_cast<double>(features.edges) / std::max(features.bodies, 1)};
+std::array<double, 4> ExpectedFactorizations::terms(const CostFeatures& features) {
+  const int bodies = std::max(features.bodies, 1);
+  return {1, std::log(bodies), static_cast<double>(features.edges) / bodies, features.mass_spread};
 }
 
 double ExpectedFactorizations::of(const CostFeatures& features) const {
-  const auto [one, log_rows, degree] = terms(features);
-  return std::clamp(std::exp(constant * one + per_log_row * log_rows + per_degree * degree), 1.0, most);
+  const auto [one, log_bodies, degree, spread] = terms(features);
+  return std::clamp(
+      std::exp(constant * one + per_log_body * log_bodies + per_degree * degree + per_mass_spread * spread),
+      1.0, most);
 }
 
 ExpectedFactorizations ExpectedFactorizations::always(double factorizations) {
-  return {std::log(factorizations), 0, 0, factorizations};
+  return {std::log(factorizations), 0, 0, 0, factorizations};
 }
 
 double modelled_ms(const CostFeatures& features, const KernelCost& cost) {

@@ -27,19 +27,21 @@ struct CostTerm {
   double (*count)(const CostFeatures& features, int threads);
 };
 
-inline constexpr int kCostTerms = 11;
+inline constexpr int kCostTerms = 12;
 std::span<const CostTerm, kCostTerms> cost_terms();
 
-// Factorisations of a solve: more where there are more rows to decide on, fewer where a body is held by more others, as in a
-// tower at rest. Within what was fitted,
+// Factorisations of a solve: more where there are more bodies and where their masses differ, fewer where a body is held by more
+// others, as in a tower at rest. Within what was fitted,
 //
-//     ln factorizations = constant + per_log_row ln(rows) + per_degree edges / bodies,   in [0, ln(most)]
+//     ln factorizations = constant + per_log_body ln(bodies) + per_degree edges / bodies + per_mass_spread s,   in [0, ln(most)]
+//
+// with s the standard deviation of ln(mass).
 struct ExpectedFactorizations {
-  double constant = 0, per_log_row = 0, per_degree = 0;
+  double constant = 0, per_log_body = 0, per_degree = 0, per_mass_spread = 0;
   double most = 1;
 
-  // What the three numbers are coefficients of.
-  static std::array<double, 3> terms(const CostFeatures& features);
+  // What the four numbers are coefficients of.
+  static std::array<double, 4> terms(const CostFeatures& features);
   double of(const CostFeatures& features) const;
   static ExpectedFactorizations always(double factorizations);  // >= 1
 };

@@ -18,22 +18,22 @@ struct Source {
 
 // Every second one is held out, so that sizes and scenes are in both halves.
 constexpr Source kSources[] = {
-    {"rock_pile", "bodies", "50", "60,100,150,250"},
-    {"rock_pile", "bodies", "100", "60,100,150,250"},
-    {"rock_pile", "bodies", "200", "70,110,200,280"},
-    {"rock_pile", "bodies", "300", "70,110,200,280"},
-    {"large_rock_pile", "bodies", "200", "70,110,200,280"},
-    {"large_rock_pile", "bodies", "400", "70,110,200,280"},
-    {"log_tower", "layers", "10", "20,50,90,130"},
-    {"log_tower", "layers", "20", "20,50,90,130"},
-    {"log_tower", "layers", "30", "20,50,90,130"},
-    {"log_tower", "layers", "40", "20,50,90,130"},
-    {"chain_drop", "links", "50", "60,100,170,250"},
-    {"chain_drop", "links", "100", "60,100,170,250"},
-    {"silo", "bodies", "50", "10,20,35,50"},
-    {"silo", "bodies", "80", "10,20,35,50"},
-    {"silo", "bodies", "150", "10,20,35,50"},
-    {"silo", "bodies", "200", "10,20,35,50"},
+    {"rock_pile", "bodies", "50", "60,80,100,125,150,180,215,250"},
+    {"rock_pile", "bodies", "100", "60,80,100,125,150,180,215,250"},
+    {"rock_pile", "bodies", "200", "70,90,110,140,170,200,240,280"},
+    {"rock_pile", "bodies", "300", "70,90,110,140,170,200,240,280"},
+    {"large_rock_pile", "bodies", "200", "70,90,110,140,170,200,240,280"},
+    {"large_rock_pile", "bodies", "400", "70,90,110,140,170,200,240,280"},
+    {"log_tower", "layers", "10", "20,50,65,75,85,100,115,130"},
+    {"log_tower", "layers", "20", "20,50,65,75,85,100,115,130"},
+    {"log_tower", "layers", "30", "20,50,65,75,85,100,115,130"},
+    {"log_tower", "layers", "40", "20,50,65,75,85,100,115,130"},
+    {"chain_drop", "links", "50", "60,80,100,125,150,180,215,250"},
+    {"chain_drop", "links", "100", "60,80,100,125,150,180,215,250"},
+    {"silo", "bodies", "50", "10,15,20,25,30,35,40,50"},
+    {"silo", "bodies", "80", "10,15,20,25,30,35,40,50"},
+    {"silo", "bodies", "150", "10,15,20,25,30,35,40,50"},
+    {"silo", "bodies", "200", "10,15,20,25,30,35,40,50"},
 };
 
 RunOptions options_of(const Source& source, std::uint64_t seed) {

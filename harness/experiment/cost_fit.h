@@ -26,8 +26,8 @@ struct CostSample {
 double interface_size(double flops);
 
 // Samples of one kernel and number of threads, at least one. The share of active rows is their median; the expected
-// factorisations are fitted to theirs by least squares of the logarithm. Each group of terms is fitted to the times of its
-// own stages, with what each sample really factored: nonnegative coefficients of least squared error as a share of the
+// factorisations are fitted to theirs by least absolute error of the logarithm. Each group of terms is fitted to the times of its
+// own stages, with what each sample really factored: nonnegative coefficients of least absolute error as a share of the
 // whole solve.
 KernelCost fit_cost(std::span<const CostSample> samples);
 

@@ -29,6 +29,7 @@ void expect_near(double expected, double actual, const char* what) {
 void expect_equal(const CostFeatures& expected, const CostFeatures& actual) {
   EXPECT_EQ(expected.bodies, actual.bodies);
   EXPECT_EQ(expected.edges, actual.edges);
+  EXPECT_NEAR(expected.mass_spread, actual.mass_spread, 1e-6);
   EXPECT_EQ(expected.rows, actual.rows);
   EXPECT_EQ(expected.cut_rows, actual.cut_rows);
   EXPECT_EQ(expected.cover_bodies, actual.cover_bodies);
@@ -110,22 +111,22 @@ TEST(CostModel, is_the_sum_of_its_terms) {
     blocks += part.blocks;
     entries += part.entries;
   }
-  const double once_ns = 1e3 * 1 + (2 + 3) * features.rows + 4 * blocks;
+  const double once_ns = 1e3 * 1 + (2 + 3) * features.rows + 4 * blocks + 12 * features.bodies;
   const double pass_ns = 5e3 * features.parts.size() + 6 * features.rows + 7 * blocks + 8 * local +
                          9 * forming + 10 * features.interface_flops + 11 * entries;
   expect_near(1e-6 * (once_ns + 3 * pass_ns), modelled_ms(features, cost), "ms");
 }
 
-TEST(ExpectedFactorizations, follow_rows_and_degree_within_what_was_fitted) {
+TEST(ExpectedFactorizations, follow_bodies_degree_and_masses_within_what_was_fitted) {
   CostFeatures features;
-  features.rows = 100, features.bodies = 10, features.edges = 25;
-  const ExpectedFactorizations law{0.5, 0.25, -0.1, 5};
-  EXPECT_NEAR(law.of(features), std::exp(0.5 - 0.25) * std::pow(100, 0.25), 1e-12);
-  features.rows = 1000000;
+  features.bodies = 10, features.edges = 25, features.mass_spread = 2;
+  const ExpectedFactorizations law{0.5, 0.25, -0.1, 0.125, 5};
+  EXPECT_NEAR(law.of(features), std::exp(0.5 - 0.25 + 0.25) * std::pow(10, 0.25), 1e-12);
+  features.mass_spread = 20;
   EXPECT_EQ(law.of(features), 5);
   features.edges = 1000;
   EXPECT_EQ(law.of(features), 1);
-  EXPECT_EQ(law.of({}), std::exp(0.5));  // no rows
+  EXPECT_EQ(law.of({}), std::exp(0.5));  // no bodies
   EXPECT_NEAR(ExpectedFactorizations::always(7).of(features), 7, 1e-12);
 }
 
@@ -310,7 +311,7 @@ TEST(Auto, keeps_a_choice_that_was_made_before) {
 }
 
 std::vector<KernelCost> some_costs() {
-  KernelCost one{CostKernel::schur_rows, 1, {-0.5, 0.25, -0.125, 6}, 0.25, {}};
+  KernelCost one{CostKernel::schur_rows, 1, {-0.5, 0.25, -0.125, 0.0625, 6}, 0.25, {}};
   std::iota(one.cost.begin(), one.cost.end(), 0.5);
   KernelCost two = one;
   two.threads = 2;
@@ -325,8 +326,9 @@ TEST(Calibration, reads_what_it_writes) {
   for (int k : {0, 1}) {
     EXPECT_EQ(read.kernels[k].threads, k + 1);
     EXPECT_EQ(read.kernels[k].factorizations.constant, -0.5);
-    EXPECT_EQ(read.kernels[k].factorizations.per_log_row, 0.25);
+    EXPECT_EQ(read.kernels[k].factorizations.per_log_body, 0.25);
     EXPECT_EQ(read.kernels[k].factorizations.per_degree, -0.125);
+    EXPECT_EQ(read.kernels[k].factorizations.per_mass_spread, 0.0625);
     EXPECT_EQ(read.kernels[k].factorizations.most, 6);
     EXPECT_EQ(read.kernels[k].active_share, 0.25);
     EXPECT_EQ(read.kernels[k].cost, some_costs()[k].cost);
@@ -359,20 +361,20 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 TEST(Calibration, names_the_line_that_is_wrong) {
   const std::string good = calibration_text({}, some_costs());
   EXPECT_EQ(error_of(good), "");
-  EXPECT_EQ(error_of(""), "text is no calibration: schema = \"cleave-calibration-2\" is missing");
+  EXPECT_EQ(error_of(""), "text is no calibration: schema = \"cleave-calibration-3\" is missing");
   EXPECT_EQ(error_of(replaced(good, "schur-rows", "schur-row")),
             "text: line 3: 'schur-row' is unknown (did you mean 'schur-rows'?); choices: schur-rows, "
             "schur-bodies, monolithic");
   EXPECT_EQ(error_of(replaced(good, "active_share = 0.25", "active_share = 2")),
-            "text: line 8: active_share: 2 is not in [0, 1]");
+            "text: line 9: active_share: 2 is not in [0, 1]");
   EXPECT_EQ(error_of(replaced(good, "active_share = 0.25\n", "")),
             "text lacks active_share of [schur-rows.threads-1]");
   EXPECT_EQ(error_of(replaced(good, "threads-2", "threads-1")),
-            "text: line 21: [schur-rows.threads-1] stands twice");
+            "text: line 23: [schur-rows.threads-1] stands twice");
   EXPECT_EQ(error_of(replaced(good, "us_per_solve = 0.5", "us_per_solve = -1")),
-            "text: line 9: us_per_solve: -1 is not in [0, inf)");
+            "text: line 10: us_per_solve: -1 is not in [0, inf)");
   EXPECT_EQ(error_of(replaced(good, "us_per_solve", "us_per_solves")).substr(0, 43),
-            "text: line 9: 'us_per_solves' is unknown (d");
+            "text: line 10: 'us_per_solves' is unknown (");
 }
 
 TEST(Calibration, is_known_once_it_was_read) {

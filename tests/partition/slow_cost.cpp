@@ -127,6 +127,12 @@ CostFeatures slow_cost_features(const BodyGraph& graph, std::span<const int> par
   if (kernel == CostKernel::monolithic) parts.assign(n, 0), part_count = n > 0;
   CostFeatures features;
   features.kernel = kernel;
+  double mean = 0, mean_square = 0;
+  for (int i = 0; i < n; ++i) {
+    mean += std::log(graph.mass_kg(i)) / n;
+    mean_square += std::log(graph.mass_kg(i)) * std::log(graph.mass_kg(i)) / n;
+  }
+  features.mass_spread = std::sqrt(std::max(0.0, mean_square - mean * mean));
   features.parts.resize(part_count);
   count_rows(graph, parts, features);
   if (kernel == CostKernel::schur_rows) {
