@@ -54,7 +54,7 @@ STAGES = (
     Stage("tradeoff", ("tradeoff", "--out", "{out}"), 20,
           files=tuple((file, file) for file in ("tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "time_to_accuracy.png",
                                                 "accuracy_profile.png"))),
-    Stage("model_savings", ("model_savings", "--out", "{out}"), 3, files=(("model_savings.csv", "model_savings.csv"),)),
+    Stage("model_savings", ("model_savings", "--out", "{out}"), 6, files=(("model_savings.csv", "model_savings.csv"),)),
     Stage("friction_models", ("friction_models", "--out", "{out}"), 30,
           files=tuple((file, file) for file in ("friction_motion.csv", "friction_velocities.csv"))),
     Stage("friction_cost", ("friction_cost", "--out", "{out}"), 15, files=(("friction_cost.csv", "friction_cost.csv"),)),
