@@ -2,12 +2,14 @@
 //
 // Every problem is split by several partitioners, refiners and sizes of part, and solved by each kernel of the model on one
 // and on two threads, in rounds, the fastest of which counts: a core is not as fast in one minute as in the next. Every
-// second source of problems is held out: the errors that are reported are those on what the fit has not seen. Solves that handed over to another strategy are left out of both, because they mix passes of two kinds.
+// second source of problems is held out: the errors that are reported are those on what the fit has not seen. Solves that
+// handed over to another strategy are left out of both, because they mix passes of two kinds.
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
@@ -87,8 +89,9 @@ void set_times(const StepRecord& row, CostSample& sample) {
   add(CostGroup::sweeps_and_assembly, row.t_s_other_ms);
 }
 
-CostSample sample_of(const StepRecord& row, const Outcome& outcome, const BodyGraph& graph, int cell) {
-  CostSample sample{graph, {outcome.part_of_body, row.parts}, kernel_of(row.solver), row.threads};
+CostSample sample_of(const StepRecord& row, const std::vector<int>& part_of_body, const BodyGraph& graph,
+                     int cell) {
+  CostSample sample{graph, {part_of_body, row.parts}, kernel_of(row.solver), row.threads};
   sample.factorizations = row.factorizations;
   sample.cell = cell;
   set_times(row, sample);
@@ -107,7 +110,7 @@ struct Samples {
 // All cells of one problem, each in its fastest round so far.
 struct MeasuredProblem {
   std::vector<StepRecord> rows;
-  std::vector<Outcome> outcomes;  // of any round
+  std::vector<std::vector<int>> part_of_body;  // the same in every round
 };
 
 void keep_fastest(MeasuredProblem&& round, MeasuredProblem& kept) {
@@ -134,7 +137,8 @@ std::vector<MeasuredProblem> measure_rounds(const std::vector<CalibrationProblem
     const CalibrationProblem& at_hand = problems[visit % count];
     context.position_m = at_hand.position_m;
     MeasuredProblem round{std::vector<StepRecord>(combinations.size(), blank), {}};
-    round.outcomes = measure_all(combinations, at_hand.problem, visit % count, round.rows);
+    for (Outcome& outcome : measure_all(combinations, at_hand.problem, visit % count, round.rows))
+      round.part_of_body.push_back(std::move(outcome.part_of_body));
     keep_fastest(std::move(round), measured[visit % count]);
     line.update(visit + 1, kRounds * count);
   }
@@ -149,7 +153,7 @@ void add_samples(const MeasuredProblem& measured, const BodyGraph& graph, std::s
     if (row.fallbacks > 0) {
       ++handed_over;
     } else {
-      half.push_back(sample_of(row, measured.outcomes[i], graph, static_cast<int>(first_cell + i)));
+      half.push_back(sample_of(row, measured.part_of_body[i], graph, static_cast<int>(first_cell + i)));
     }
   }
 }

@@ -56,10 +56,11 @@ bool is_anything_solved(std::span<const RowPlan> plan) {
   return std::ranges::find(plan, RowPlan::solved) != plan.end();
 }
 
-std::vector<char> rows_at_rest(std::span<const RowPlan> plan) {
-  std::vector<char> is_at_rest(plan.size());
-  std::ranges::transform(plan, is_at_rest.begin(), [](RowPlan row) { return row == RowPlan::at_rest; });
-  return is_at_rest;
+// (m) 1 where that becomes of the row.
+std::vector<char> rows_that_are(RowPlan what, std::span<const RowPlan> plan) {
+  std::vector<char> are(plan.size());
+  std::ranges::transform(plan, are.begin(), [what](RowPlan row) { return row == what; });
+  return are;
 }
 
 void follow_normal_rows(const StepProblem& problem, std::vector<RowPlan>& plan) {
@@ -152,9 +153,8 @@ std::vector<RowPlan> ModelPlanner::plan(const StepProblem& problem) {
 
 // Where no row is left to solve the solver gets no bodies either.
 void ModelPlanner::reduce(const StepProblem& problem) {
-  if (is_plan_given_) rest_.take(problem, rows_at_rest(plan_));
-  is_solved_.resize(plan_.size());
-  std::ranges::transform(plan_, is_solved_.begin(), [](RowPlan row) { return row == RowPlan::solved; });
+  if (is_plan_given_) rest_.take(problem, rows_that_are(RowPlan::at_rest, plan_));
+  is_solved_ = rows_that_are(RowPlan::solved, plan_);
   if (is_anything_solved(plan_)) {
     copy_rows(problem, is_solved_, reduced_, new_row_);
     reduced_.free_velocity = rest_.velocity();

@@ -66,7 +66,6 @@ class ModelPlanner {
   SolveSummary solve_reduced(StepSolver& solver, const Parts& parts);
   SolveSummary solve_pass(StepSolver& solver, const StepProblem& problem, const Parts& parts,
                           Solution& solution);
-
   SolveSummary solve_planned(StepSolver& solver, const StepProblem& problem, const Parts& parts,
                              Solution& solution, ModelCounts& counts);
 
@@ -74,8 +73,7 @@ class ModelPlanner {
   std::vector<RowPlan> plan_;
   std::vector<char> is_solved_;  // (m) whether plan_ says so
   bool is_plan_given_ = false;
-  StepProblem
-      reduced_;  // the rows that are solved, with all bodies and the velocities of rest_; empty without rows
+  StepProblem reduced_;  // the rows that are solved, all bodies, and velocities of rest_; empty without rows
   std::vector<int> new_row_;  // (m) in reduced_
   Solution found_;
 };

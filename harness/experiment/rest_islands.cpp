@@ -44,10 +44,12 @@ void RestIslands::ask_for_first_rows(const StepProblem& problem) {
   }
 }
 
-void RestIslands::ask_for_islands_at_rest(const StepProblem& problem) {
+// Returns whether there is any.
+bool RestIslands::ask_for_islands_at_rest(const StepProblem& problem) {
   is_at_rest_.resize(problem.rhs.size());
   for (int row = 0; row < problem.row_count(); ++row)
     is_at_rest_[row] = is_moving_[island_of(problem, row)] == 0;
+  return std::ranges::find(is_at_rest_, 1) != is_at_rest_.end();
 }
 
 // Where a residual is no number, the island is not at rest. Returns whether any moves.
@@ -89,12 +91,8 @@ const std::vector<char>& RestIslands::find(const StepProblem& problem) {
     ask_for_first_rows(problem);
     mark_moving(problem);
   }
-  ask_for_islands_at_rest(problem);
-  has_rested_ = std::ranges::find(is_at_rest_, 1) != is_at_rest_.end();
-  if (has_rested_ && mark_moving(problem)) {
-    ask_for_islands_at_rest(problem);
-    has_rested_ = std::ranges::find(is_at_rest_, 1) != is_at_rest_.end();
-  }
+  has_rested_ = ask_for_islands_at_rest(problem);
+  if (has_rested_ && mark_moving(problem)) has_rested_ = ask_for_islands_at_rest(problem);
   restore_moving(problem);
   return is_at_rest_;
 }

@@ -25,12 +25,11 @@ class RestIslands {
  private:
   void join_bodies(const StepProblem& problem);
   void ask_for_first_rows(const StepProblem& problem);
-  void ask_for_islands_at_rest(const StepProblem& problem);
+  bool ask_for_islands_at_rest(const StepProblem& problem);
   bool mark_moving(const StepProblem& problem);
   int root_of(int body);
-  int island_of(const StepProblem& problem, int row) const { return parent_[problem.row_body[2 * row]]; }
-
   void restore_moving(const StepProblem& problem);
+  int island_of(const StepProblem& problem, int row) const { return parent_[problem.row_body[2 * row]]; }
 
   std::vector<char> is_at_rest_;  // (m) first what the judge is asked for
   std::vector<double> velocity_;  // (n, 6)

@@ -373,8 +373,8 @@ TEST(Calibration, names_the_line_that_is_wrong) {
             "text: line 23: [schur-rows.threads-1] stands twice");
   EXPECT_EQ(error_of(replaced(good, "us_per_solve = 0.5", "us_per_solve = -1")),
             "text: line 10: us_per_solve: -1 is not in [0, inf)");
-  EXPECT_EQ(error_of(replaced(good, "us_per_solve", "us_per_solves")).substr(0, 43),
-            "text: line 10: 'us_per_solves' is unknown (");
+  EXPECT_EQ(error_of(replaced(good, "us_per_solve", "us_per_solves")).substr(0, 44),
+            "text: line 10: 'us_per_solves' is unknown (d");
 }
 
 TEST(Calibration, is_known_once_it_was_read) {
