@@ -2,7 +2,7 @@
 // ones. Vectors of a contact have three entries; the last is zero where there is one tangent.
 //
 // K is no product of intervals, so that "the nearest point of the set" and the residual are those of the whole contact, with
-// one d (m/s per N s) for its rows. (The judge has its own, residual.cpp.)
+// one d (m/s per N s) for its rows. (The judge has its own, residual_rows.cpp.)
 #pragma once
 
 #include <Eigen/Core>

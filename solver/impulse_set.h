@@ -1,5 +1,5 @@
 // The set that the impulses of a step problem must lie in, as the prepared step, the solve state and the
-// interior point see it. (The judge has its own, residual.cpp.)
+// interior point see it. (The judge has its own, residual_rows.cpp.)
 //
 // Every row has an interval of its own, but for contacts whose box is turned (StepProblem::box_angle_rad):
 // there the impulses of the three rows (normal, t1, t2) lie in a box along axes that are turned by the angle

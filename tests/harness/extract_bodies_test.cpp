@@ -97,7 +97,7 @@ TEST(BodyTerms, GyroscopicTorqueSolvesItsImplicitEquation) {
   }
 }
 
-void expect_refused(const SceneBuilder& builder, const std::string& feature) {
+void expect_refused(const ContentMaker& builder, const std::string& feature) {
   const auto world = make_test_world(builder, 9.81, true);
   StepProblem problem;
   try {

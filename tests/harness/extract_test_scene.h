@@ -28,26 +28,26 @@ class TestRandom {
   std::mt19937_64 generator_;
 };
 
-using SceneBuilder = std::function<void(dWorldID, dSpaceID, SceneContent&)>;
+using ContentMaker = std::function<void(dWorldID, dSpaceID, SceneContent&)>;
 
-// SceneEntry::make is a plain function, so the builder of the world under construction waits here.
-inline SceneBuilder& pending_builder() {
-  static SceneBuilder builder;
-  return builder;
+// SceneEntry::make is a plain function, so the maker of the world under construction waits here.
+inline ContentMaker& pending_maker() {
+  static ContentMaker maker;
+  return maker;
 }
 
 class ExtractTestScene : public Scene {
  public:
   SceneContent build(dWorldID world, dSpaceID space, const Settings&, std::uint64_t) override {
     SceneContent content;
-    pending_builder()(world, space, content);
+    pending_maker()(world, space, content);
     return content;
   }
 };
 
-inline std::unique_ptr<OdeWorld> make_test_world(SceneBuilder builder, double gravity_m_per_s2,
+inline std::unique_ptr<OdeWorld> make_test_world(ContentMaker maker, double gravity_m_per_s2,
                                                  bool gyroscopic) {
-  pending_builder() = std::move(builder);
+  pending_maker() = std::move(maker);
   const SceneEntry entry{{"test", "", ""},
                          [] { return std::unique_ptr<Scene>(std::make_unique<ExtractTestScene>()); }};
   return std::make_unique<OdeWorld>(entry, Settings(), 1, gravity_m_per_s2, gyroscopic);
