@@ -41,6 +41,7 @@ Arguments bad_values(const Parameter& parameter) {
     case Parameter::Kind::flag:
       return {"maybe"};
     case Parameter::Kind::path:
+    case Parameter::Kind::content:
       return {};  // what is wrong with a file is the scene's own matter
   }
   return {};

@@ -85,8 +85,9 @@ TEST_F(Fclib, LibraryReadsTheSystemOfTheProblem) {
       EXPECT_EQ(global->M->m, 6 * bodies + problem.row_count() - stiff);
       int contact = 0;
       for (int r = 0; r < problem.row_count(); ++r)
-        if (problem.row_kind[r] == RowKind::normal)
+        if (problem.row_kind[r] == RowKind::normal) {
           EXPECT_EQ(global->mu[contact++], problem.contact_set[r] == ContactSet::coulomb ? 0.5 : 0);
+        }
     }
 }
 
@@ -115,7 +116,9 @@ TEST_F(Fclib, ComesBackAsTheSameProblem) {
       EXPECT_EQ(back.row_kind[r], problem.row_kind[o]);
       EXPECT_EQ(back.friction_coefficient[r], problem.friction_coefficient[o]);
       EXPECT_EQ(back.contact_set[r], problem.contact_set[o]);
-      if (back.friction_row[r] >= 0) EXPECT_EQ(kept[back.friction_row[r]], problem.friction_row[o]);
+      if (back.friction_row[r] >= 0) {
+        EXPECT_EQ(kept[back.friction_row[r]], problem.friction_row[o]);
+      }
     }
     for (std::size_t k = 0; k < problem.free_velocity.size(); ++k)
       EXPECT_NEAR(back.free_velocity[k], problem.free_velocity[k], 1e-13);
@@ -286,7 +289,9 @@ TEST_F(Fclib, TakesBodiesOfThreeUnknowns) {
     const GlobalOfLibrary global = read_by_library(file());
     expect_same_system(p, Dense(*global), problem.spacedim);
     for (int k = 0; k < 6; ++k)
-      if (k != 0 && k != 1 && k != last) EXPECT_EQ(p.free_velocity[k], 0);
+      if (k != 0 && k != 1 && k != last) {
+        EXPECT_EQ(p.free_velocity[k], 0);
+      }
   }
 }
 

@@ -56,8 +56,9 @@ TEST(Repartition, IsNewEveryKSteps) {
   const CsvTable rows =
       rows_of({"--steps", "12", "--repeats", "2", "--repartition", "every:4"}, directory / "out");
   for (std::size_t row = 0; row < rows.rows.size(); ++row)
-    if (rows.at(row, "partitioner") != "-")
+    if (rows.at(row, "partitioner") != "-") {
       EXPECT_EQ(rows.at(row, "partition_origin") == "fresh", row / 3 % 4 == 0) << "row " << row;
+    }
 }
 
 TEST(Repartition, NamesWhatIsWrong) {

@@ -64,9 +64,9 @@ TEST(Version, NamesVersionCommitStateAndCompiler) {
   const std::regex form(
       R"(cleave \d+\.\d+\.\d+ \(commit ([0-9a-f]{40}|unknown), (clean|dirty|unknown)\) (GCC|Clang) .+\n)");
   EXPECT_TRUE(std::regex_match(result.out, form)) << result.out;
-  EXPECT_EQ(version_text({"1.2.3", "abc", "true", "GCC 12", "", ""}),
+  EXPECT_EQ(version_text({"1.2.3", "abc", "true", "GCC 12", "", "", ""}),
             "cleave 1.2.3 (commit abc, dirty) GCC 12");
-  EXPECT_EQ(version_text({"1.2.3", "abc", "false", "GCC 12", "", ""}),
+  EXPECT_EQ(version_text({"1.2.3", "abc", "false", "GCC 12", "", "", ""}),
             "cleave 1.2.3 (commit abc, clean) GCC 12");
 }
 
