@@ -97,8 +97,8 @@ TEST(BodyTerms, GyroscopicTorqueSolvesItsImplicitEquation) {
   }
 }
 
-void expect_refused(const ContentMaker& builder, const std::string& feature) {
-  const auto world = make_test_world(builder, 9.81, true);
+void expect_refused(const ContentMaker& maker, const std::string& feature) {
+  const auto world = make_test_world(maker, 9.81, true);
   StepProblem problem;
   try {
     append_body_terms(*world, kStep_s, problem);

@@ -52,7 +52,9 @@ class Project:
         paths = [path for folder in FOLDERS for path in sorted((root / folder).rglob("*")) if path.suffix in (".cpp", ".h")]
         texts = {path.relative_to(root).as_posix(): path.read_text() for path in paths}
         self.sources = [file for file in texts if file.endswith(".cpp")]
-        self.own, self.every = ({file: names_of(text)[k] for file, text in texts.items()} for k in range(2))
+        names = {file: names_of(text) for file, text in texts.items()}
+        self.own = {file: own for file, (own, _) in names.items()}
+        self.every = {file: every for file, (_, every) in names.items()}
         self.includes = {file: [name for name in INCLUDE.findall(text) if name in texts] for file, text in texts.items()}
 
     def seen_names(self, file):
