@@ -8,6 +8,7 @@ which none declares a name between "namespace {" and its end that another of the
 too. What is looked at is the first column, where this project's formatting puts every declaration of a namespace; overloads of
 a function count as one name.
 """
+import argparse
 import pathlib
 import re
 import sys
@@ -90,6 +91,8 @@ def room_of(file):
 
 def main(root, size):
     project, units_of_room = Project(root), {}
+    if not project.sources:
+        sys.exit(f"units.py: no sources in '{root}'")
     for file in project.sources:
         units = units_of_room.setdefault(room_of(file), [])
         own, seen = project.own[file], project.seen_names(file)
@@ -102,4 +105,8 @@ def main(root, size):
 
 
 if __name__ == "__main__":
-    main(pathlib.Path(sys.argv[1]), int(sys.argv[2]))
+    parser = argparse.ArgumentParser(description="See the head of this file.")
+    parser.add_argument("root", metavar="ROOT", type=pathlib.Path)
+    parser.add_argument("size", metavar="SIZE", type=int)
+    given = parser.parse_args()
+    main(given.root, given.size)

@@ -64,6 +64,11 @@ class OfAPlantedProject(unittest.TestCase):
         self.write("solver/a.cpp", OWN.format("struct Row;"))
         self.assertEqual(*self.units("solver/a.cpp", "solver/b.cpp"))
 
+    def test_a_folder_without_sources_is_an_error(self):
+        with self.assertRaises(subprocess.CalledProcessError) as failed:
+            units_of(self.root)
+        self.assertEqual(failed.exception.stderr, f"units.py: no sources in '{self.root}'\n")
+
     def test_rooms_are_apart(self):
         for name in ("solver/a.cpp", "partition/a.cpp", "harness/files/a.cpp", "harness/world/a.cpp", "tests/solver/a.cpp"):
             self.write(name, "")
