@@ -9,6 +9,7 @@ from cleave_scripts.torture.tally import Tally
 
 SIGNALS = signal.SIGINT, signal.SIGTERM
 FORK = multiprocessing.get_context("fork")
+AGAIN_S = 1  # an interrupt is told again
 
 
 class Lanes:
@@ -32,14 +33,20 @@ class Lanes:
     def watch(self, tell):
         """tell(text, tally of all lanes) until the last lane has ended. Whether it was interrupted since the lanes began."""
         while self.pipes:
-            for pipe in multiprocessing.connection.wait(self.pipes):
+            for pipe in multiprocessing.connection.wait(self.pipes, AGAIN_S):
                 self._take(pipe, tell)
+            if self.interrupted:
+                self._end_lanes()
         signal.signal(signal.SIGINT, self.before)
         return self.interrupted
 
     def _interrupt(self, *_):
         """No exception, which could come amid the reading of a pipe."""
         self.interrupted = True
+        self._end_lanes()
+
+    def _end_lanes(self):
+        """Said until they have ended: a signal that comes just before a system call waits for the end of that call."""
         for _, process in self.pipes.values():
             process.terminate()
 
@@ -71,6 +78,7 @@ class Lanes:
             signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
             self.make(lane, tally, tell)
             tell("")
+            signal.signal(signal.SIGTERM, lambda *_: None)  # which may still be on its way
         except KeyboardInterrupt:
             pipe.send(("", tally))
 
