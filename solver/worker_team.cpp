@@ -72,10 +72,6 @@ void WorkerTeam::call_others() {
   calls_.notify_all();
 }
 
-void WorkerTeam::finish_one() {
-  if (unfinished_.fetch_sub(1) == 1) call_others();
-}
-
 // The task of the next ticket. Its entry may be a moment behind the count of open tasks.
 int WorkerTeam::index_of(Queue& queue) {
   const int ticket = queue.taken.fetch_add(1, std::memory_order_relaxed);
@@ -100,8 +96,12 @@ bool WorkerTeam::take_from(Queue& queue) {
     }
   }
   if (graph_ != nullptr) release_next(index);
-  finish_one();
   return true;
+}
+
+bool WorkerTeam::has_open() const {
+  return std::any_of(queues_.get(), queues_.get() + 2 * threads_,
+                     [](const Queue& queue) { return queue.open.load() > 0; });
 }
 
 bool WorkerTeam::take_one(int thread) {
@@ -112,13 +112,19 @@ bool WorkerTeam::take_one(int thread) {
   return false;
 }
 
+// As long as there are some. That they have returned is said once for all of them: the count is everyone's.
+void WorkerTeam::take_all(int thread) {
+  int count = 0;
+  while (take_one(thread)) ++count;
+  if (count > 0 && unfinished_.fetch_sub(count) == count) call_others();
+}
+
 void WorkerTeam::work(int thread) {
   while (!stop_) {
-    while (take_one(thread)) {
-    }
+    take_all(thread);
     ++watching_;
     const std::uint32_t seen = calls_.load();
-    if (!take_one(thread) && !stop_ && !look_out([&] { return calls_.load() != seen; })) calls_.wait(seen);
+    if (!has_open() && !stop_ && !look_out([&] { return calls_.load() != seen; })) calls_.wait(seen);
     --watching_;
   }
 }
@@ -134,12 +140,11 @@ void WorkerTeam::begin_stage(int count, Task task, void* context) {
 void WorkerTeam::finish_stage() {
   const auto all_done = [this] { return unfinished_.load() == 0; };
   call_others();
-  while (!all_done()) {
-    if (take_one(0)) continue;
+  for (take_all(0); !all_done(); take_all(0)) {
     ++watching_;
     const std::uint32_t seen = calls_.load();
     const auto changed = [&] { return all_done() || calls_.load() != seen; };
-    if (!take_one(0) && !all_done() && !look_out(changed)) calls_.wait(seen);
+    if (!has_open() && !all_done() && !look_out(changed)) calls_.wait(seen);
     --watching_;
   }
   if (failed_) std::rethrow_exception(std::exchange(failure_, nullptr));
@@ -160,11 +165,11 @@ void WorkerTeam::run(int count, Task task, void* context) {
   finish_stage();
 }
 
-// An entry, then the right to take it.
-void WorkerTeam::list(int task, bool was_waiting) {
-  Queue& queue = queues_[graph_->home(task, threads_) + (was_waiting ? threads_ : 0)];
+// An entry; the right to take it follows.
+WorkerTeam::Queue& WorkerTeam::enter(int task, int kind) {
+  Queue& queue = queues_[graph_->home(task, threads_) + kind * threads_];
   queue.tasks[queue.listed.fetch_add(1, std::memory_order_relaxed)].store(task, std::memory_order_release);
-  queue.open.fetch_add(1);
+  return queue;
 }
 
 // Tasks that waited for this one alone may start now.
@@ -172,7 +177,7 @@ void WorkerTeam::release_next(int task) {
   bool released = false;
   for (const int next : graph_->next(task)) {
     if (waits_[next].fetch_sub(1, std::memory_order_acq_rel) != 1) continue;
-    list(next, true);
+    enter(next, 1).open.fetch_add(1);
     released = true;
   }
   if (released) call_others();
@@ -212,7 +217,8 @@ void WorkerTeam::run(const TaskGraph& graph, Task task, void* context) {
   graph_ = &graph;
   list_first_tasks();
   begin_stage(graph.task_count(), task, context);
-  for (const int first : first_tasks_) list(first, false);
+  for (const int first : first_tasks_) enter(first, 0);
+  for (int k = 0; k < threads_; ++k) queues_[k].open.store(queues_[k].listed.load());
   finish_stage();
 }
 

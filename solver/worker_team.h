@@ -67,20 +67,22 @@ class WorkerTeam {
   void begin_stage(int count, Task task, void* context);
   void finish_stage();
   void list_first_tasks();
-  void list(int task, bool was_waiting);
+  Queue& enter(int task, int kind);
   void release_next(int task);
   int index_of(Queue& queue);
+  void take_all(int thread);
   bool take_one(int thread);
   bool take_from(Queue& queue);
-  void finish_one();
+  bool has_open() const;
   void call_others();
   void work(int thread);
   void dismiss();
 
   const int threads_;
   std::mutex one_caller_;
-  // The stage at hand. Written by its caller while nobody holds a task.
-  Task task_ = nullptr;
+  // The stage at hand. Written by its caller while nobody holds a task. What threads write while tasks run has cache lines
+  // of its own: a line that another core wrote last takes as long to come as a small task.
+  alignas(64) Task task_ = nullptr;
   void* context_ = nullptr;
   const TaskGraph* graph_ = nullptr;
   std::exception_ptr failure_;
@@ -90,12 +92,12 @@ class WorkerTeam {
   std::unique_ptr<std::atomic<int>[]> waits_;  // of a graph: how many tasks each still waits for
   std::vector<int> first_tasks_, home_count_;
   std::uint64_t shuffle_seed_ = 0;
-  std::atomic<int> unfinished_{0};
-  // Threads that found nothing to do watch for a change of `calls_`.
-  std::atomic<std::uint32_t> calls_{0};
-  std::atomic<int> watching_{0};
   std::atomic<bool> stop_{false};
-  std::atomic<int> granted_{0};  // threads of the region, once it has begun
+  alignas(64) std::atomic<int> unfinished_{0};
+  // Threads that found nothing to do watch for a change of `calls_`.
+  alignas(64) std::atomic<std::uint32_t> calls_{0};
+  alignas(64) std::atomic<int> watching_{0};
+  alignas(64) std::atomic<int> granted_{0};  // threads of the region, once it has begun
   std::thread workers_;
 };
 

@@ -110,6 +110,7 @@ void set_times(const Repeats& repeats, const Outcome& outcome, StepRecord& row) 
   row.t_s_max_ms = total_ms(*most);
   row.t_s_cpu_ms = outcome.cores.cpu_ms;
   row.t_s_waiting_ms = outcome.cores.waiting_ms;
+  row.core_round_trip_ns = outcome.cores.round_trip_ns;
   row.solution_hash = hex(solution_hash(outcome.solution.impulse, outcome.part_of_body));
 }
 
@@ -197,7 +198,7 @@ void Combination::solve_parts(const StepProblem& problem, const Parts& parts, Ou
   if (solver_ == nullptr) solver_ = make_solver(solver_named_, solve_options_, *context_);
   outcome.solution.impulse = problem.warm_impulse;
   outcome.solution.velocity.assign(problem.free_velocity.size(), 0.0);
-  const CoreMeter meter;
+  const CoreMeter meter(solve_options_.threads);
   outcome.summary = planner_ ? planner_->solve(*solver_, problem, parts, outcome.solution, outcome.model)
                              : solver_->solve(problem, parts, outcome.solution);
   outcome.cores = meter.stop();

@@ -7,6 +7,8 @@
 #include <limits>
 #include <string>
 
+#include "solver/core_round_trip.h"
+
 namespace cleave {
 namespace {
 
@@ -35,11 +37,12 @@ double waiting_ms() {
 }  // namespace
 
 // Reading the files costs processor time, so it stays outside the other clock.
-CoreMeter::CoreMeter() : waiting_ms_(waiting_ms()), cpu_ms_(cpu_ms()) {}
+CoreMeter::CoreMeter(int threads)
+    : round_trip_ns_(core_round_trip_ns(threads)), waiting_ms_(waiting_ms()), cpu_ms_(cpu_ms()) {}
 
 CoreTimes CoreMeter::stop() const {
   const double cpu = cpu_ms() - cpu_ms_;
-  return {cpu, waiting_ms() - waiting_ms_};
+  return {cpu, waiting_ms() - waiting_ms_, round_trip_ns_};
 }
 
 double peak_memory_mb() {

@@ -34,6 +34,10 @@ void RunSummary::add(const StepRecord& row) {
     t_s_total_ms += row.t_s_ms;
     t_s_waiting_total_ms += row.t_s_waiting_ms;
   }
+  if (!std::isnan(row.core_round_trip_ns)) {
+    t_s_apart_total_ms += row.t_s_ms;
+    if (row.core_round_trip_ns >= kFarNs) t_s_far_ms += row.t_s_ms;
+  }
   if (row.status == "ok") {
     ++rows_ok;
   } else if (failures.size() < kListedFailures) {
@@ -80,6 +84,11 @@ std::string RunSummary::text() const {
     lines +=
         format("the solves waited %.3g %% of their time for a core (%.3g of %.3g ms): others used them\n",
                100 * t_s_waiting_total_ms / t_s_total_ms, t_s_waiting_total_ms, t_s_total_ms);
+  if (t_s_far_ms > kMostFar * t_s_apart_total_ms)
+    lines += format(
+        "for %.3g %% of the time of the solves their threads were on cores far apart (core_round_trip_ns >= "
+        "%g): small ones take longer there\n",
+        100 * t_s_far_ms / t_s_apart_total_ms, kFarNs);
   // Where no world moved (replay) there is no velocity to compare with.
   const bool simulated = steps > 0;
   lines += simulated ? format("%d steps, ", steps) : format("%d problems, ", measured_steps);

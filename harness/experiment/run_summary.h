@@ -13,6 +13,8 @@ namespace cleave {
 struct RunSummary {
   static constexpr int kListedFailures = 10;
   static constexpr double kMostWaiting = 0.05;  // of the time of the solves, before it is said
+  static constexpr double kMostFar = 0.05;      // of that time on cores far apart, before it is said
+  static constexpr double kFarNs = 300;         // core_round_trip_ns; cores that share a cache need some 100
 
   int rows = 0;
   int rows_ok = 0;
@@ -26,6 +28,8 @@ struct RunSummary {
   double worst_velocity_spread_m_per_s = 0;
   double t_s_total_ms = 0;  // over all rows that say how long their solve waited for a core
   double t_s_waiting_total_ms = 0;
+  double t_s_apart_total_ms = 0;  // over all rows that say how far apart the cores of their solve were
+  double t_s_far_ms = 0;          // over those with kFarNs or more
   double wall_s = 0;
   bool interrupted = false;
   std::vector<std::string> failures;  // the first kListedFailures rows that are not ok, in words

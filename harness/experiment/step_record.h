@@ -103,6 +103,7 @@ struct StepRecord {
   std::string status_reason = "-";
   std::vector<double> measures;  // in the order of cell_measures(); empty where nothing was solved
   double t_s_cpu_ms = kUnmeasured, t_s_waiting_ms = kUnmeasured, t_s_max_ms = kUnmeasured;
+  double core_round_trip_ns = kUnmeasured;
   double peak_memory_mb = kUnmeasured;
   double residual_relative = kUnmeasured;
   // The options that can change a cell and have no column above.
@@ -320,6 +321,9 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         "rows of islands that kept the impulses of the step before in the first solve");
   visit("model_rows_returned", r.model_rows_returned, "rows of both that the judge brought back");
   visit("model_passes", r.model_passes, "solves of the step, one more each time rows came back");
+  visit_machine(
+      "core_round_trip_ns", r.core_round_trip_ns,
+      "that a number takes from one thread of that solve to another and back, just before it; nan on one");
 }
 
 // "run_id,scene,...\n"

@@ -53,7 +53,7 @@ TEST(Csv, LaterColumnsStandAtTheEnd) {
       "scotch_strategy,effort,patience,merge_small,split,calibration,cost_kernel,cost_threads,lemke_max_rows,"
       "repartition,partition_origin,auto_choice,friction_beyond_share,"
       "restart,body_order,until,order,order_seed,coloring,coloring_seed,"
-      "model,model_rows_left_out,model_rows_at_rest,model_rows_returned,model_passes\n"));
+      "model,model_rows_left_out,model_rows_at_rest,model_rows_returned,model_passes,core_round_trip_ns\n"));
 }
 
 TEST(Csv, HeaderRowAndColumnListAgree) {
@@ -83,8 +83,8 @@ TEST(Csv, FreshRecordHoldsNoZeroButTheSeed) {
 // What the documents say may differ between two runs of the same experiment, and nothing else.
 TEST(Csv, TheMachinesColumnsAreTimesThreadsAndMemory) {
   for (const Column& column : columns())
-    EXPECT_EQ(column.machine,
-              column.name.starts_with("t_") || column.name == "threads" || column.name == "peak_memory_mb")
+    EXPECT_EQ(column.machine, column.name.starts_with("t_") || column.name == "threads" ||
+                                  column.name == "core_round_trip_ns" || column.name == "peak_memory_mb")
         << column.name;
 }
 

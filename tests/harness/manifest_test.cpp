@@ -118,7 +118,7 @@ TEST_F(ManifestOfARun, DescribesTheColumnsOfStepsCsv) {
   EXPECT_EQ(ask_manifest("','.join(c['name'] for c in m['columns'])"), joined(table.header, ","));
   EXPECT_EQ(ask_manifest("m['run_id']"), table.at(0, "run_id"));
   EXPECT_EQ(ask_manifest("[c['name'] for c in m['columns'] if c['machine'] and c['name'][:2] != 't_']"),
-            "['threads', 'peak_memory_mb']");
+            "['threads', 'peak_memory_mb', 'core_round_trip_ns']");
 }
 
 TEST_F(ManifestOfARun, LeavesNoTemporaryFile) {

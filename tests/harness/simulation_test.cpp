@@ -236,6 +236,7 @@ TEST(Run, TimesOfTheRepeatsStandInOrder) {
     EXPECT_GT(number(pile.table.at(r, "t_s_cpu_ms")), 0);
     const std::string& waiting = pile.table.at(r, "t_s_waiting_ms");  // nan on a kernel without schedstat
     EXPECT_TRUE(waiting == "nan" || number(waiting) >= 0) << waiting;
+    EXPECT_EQ(pile.table.at(r, "core_round_trip_ns"), "nan");  // one thread
     EXPECT_GT(number(pile.table.at(r, "peak_memory_mb")), 1);
   }
 }
@@ -275,6 +276,25 @@ TEST(RunSummary, SaysWhenSolvesWaitedForACore) {
   row.t_s_waiting_ms = 25;
   summary.add(row);
   EXPECT_NE(summary.text().find("the solves waited 20 % of their time for a core (30 of 150 ms)"),
+            std::string::npos)
+      << summary.text();
+}
+
+TEST(RunSummary, SaysWhenCoresWereFarApart) {
+  StepRecord row;
+  row.status = "ok";
+  RunSummary summary;
+  const auto add = [&](double t_s_ms, double round_trip_ns) {
+    row.t_s_ms = t_s_ms;
+    row.core_round_trip_ns = round_trip_ns;
+    summary.add(row);
+  };
+  add(95, RunSummary::kFarNs - 1);
+  add(5, RunSummary::kFarNs);  // 5 of 100 ms: not yet more than a twentieth
+  add(1000, kUnmeasured);      // says nothing
+  EXPECT_EQ(summary.text().find("far apart"), std::string::npos) << summary.text();
+  add(25, 510);
+  EXPECT_NE(summary.text().find("for 24 % of the time of the solves their threads were on cores far apart"),
             std::string::npos)
       << summary.text();
 }

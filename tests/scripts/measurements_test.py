@@ -49,6 +49,8 @@ threads = int(words[words.index("--threads") + 1]) if "--threads" in words else 
 given = dict(zip(words, words[1:]))
 def alone_ms(step):
     return (float(os.environ.get("STAND_IN_MS", 8)) if step == 100 else 8) * (float(os.environ.get("STAND_IN_BESIDE", 1)) if beside else 1)
+def apart_ns(threads, solver):
+    return float(os.environ.get("STAND_IN_APART", 100) if threads > 1 and solver == "exact" else "nan")
 def modelled(step, threads):
     # As measured, but for step 100 as the test says.
     two = alone_ms(step) / 2 * (float(os.environ.get("STAND_IN_MODEL", 1)) if step == 100 else 1)
@@ -59,6 +61,7 @@ whole = ("pivot:monolithic",)  # ignore parts
 path = write_steps(out, [dict(**recorded(file), partitioner="-" if solver in whole else partitioner, refiner="-" if solver in whole else refiner,
                        threads=threads, rows=1200, interface_rows=50 if "whole" in words else 40,
                        status=os.environ.get("STAND_IN_STATUS", "ok"), t_s_ms=alone_ms(int(file[-9:-3])) / threads, t_s_waiting_ms=float(os.environ.get("STAND_IN_WAITING", 0.25)),
+                       core_round_trip_ns=apart_ns(threads, solver),
                        factorizations=9 if "--cold" in words else 2, seed=1, solver=solver,
                        t_pr_ms=float(os.environ.get("STAND_IN_AUTO_MS", 0.1)) if partitioner == "auto" else 0.1, calibration="-", auto_choice="-",
                        **modelled(int(file[-9:-3]), threads))

@@ -57,6 +57,15 @@ class TwoThreadsTest(Measurement):
         self.assertIn("| 8.00 | 2.00 | 1.60 | not measured: ceiling below 1.7 | 0 of 15 |", said)
         self.assertIn("| 600 | 1e-05 | - (2.00 of 1.60) | - (", speed.two_threads(self.stored()))
 
+    def test_replays_on_cores_far_apart_do_not_count(self):
+        said = self.measure("--bodies", 600, STAND_IN_APART=300).stdout
+        self.assertIn("| 600 | 1e-05 | exact | 8.00 | - | 2.00 | not measured: cores far apart |", said)
+        self.assertIn("| 600 | 1e-05 | pivot:schur-nested | 8.00 | 2.00 | 2.00 | 1.00 |", said)
+        self.assertTrue(said.endswith("\n6 of 198 replays on two threads were on cores far apart and do not count\n"), said[-99:])
+        told = speed.two_threads(self.stored())
+        self.assertIn("| - (- of 2.00) |", told)
+        self.assertIn("; 6 of 198 replays on two threads were on cores far apart and do not count. Rock piles:", told)
+
     def test_solves_that_count_and_were_alone_are_refused(self):
         self.measure("--bodies", 200, STAND_IN_LATE_S=0.3)
         self.calls()
@@ -80,6 +89,13 @@ class SharesTest(unittest.TestCase):
         share = thread_times.shares(stored_data.two_threads_rows())[0]
         self.assertEqual((share.one_ms, share.two_ms, share.beside_ms), (10, 6.25, 12.5))
         self.assertEqual((share.ratio, share.ceiling, share.share, share.measured), (1.6, 1.6, 1, False))
+
+    def test_rounds_on_cores_far_apart_are_left_out(self):
+        rows = [row | {"core_round_trip_ns": 510 if (row["threads"], row["round"]) == (2, 1) else 105} for row in stored_data.two_threads_rows()]
+        share = thread_times.shares(rows)[0]
+        self.assertEqual((share.one_ms, share.two_ms, share.far_rounds, share.rounds), (10, (6.25 + 1006.25) / 2, 1, 3))
+        self.assertEqual(thread_times.far_in_words([share]), "1 of 3 replays on two threads were on cores far apart and do not count")
+        self.assertEqual(thread_times.far_in_words(thread_times.shares(stored_data.two_threads_rows())), "")
 
     def test_a_way_that_is_missing_is_an_error(self):
         rows = [row for row in stored_data.two_threads_rows() if row["processes"] == 1 or row["step"] != 300]

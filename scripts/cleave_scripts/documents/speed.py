@@ -22,7 +22,7 @@ COLD_ROWS = 1000
 
 def _share(share):
     """A cell: the share, and what it is the quotient of."""
-    return f"{f'{share.share:.2f}' if share.measured else '-'} ({share.ratio:.2f} of {share.ceiling:.2f})"
+    return f"{f'{share.share:.2f}' if share.measured else '-'} ({thread_times.two_digits(share.ratio)} of {share.ceiling:.2f})"
 
 
 def two_threads(stored):
@@ -33,11 +33,12 @@ def two_threads(stored):
     cells = {(share.bodies, share.cfm, share.solver): _share(share) for share in piles}
     lines = [[bodies, f"{cfm:g}", *(cells[bodies, cfm, solver] for solver in solvers)]
              for bodies, cfm in dict.fromkeys((share.bodies, share.cfm) for share in piles)]
+    far = thread_times.far_in_words(found)
     least = {step: thread_times.least(of_step) for step, of_step in thread_times.by_step(large).items()}
     return (f"Two threads as a share of the ceiling: of what two independent solves on one thread each reach side by side in the "
             f"same run, 2 on an ideal machine. In brackets t_s of one thread over that of two, and the ceiling; where that is "
             f"below {thread_times.LEAST_CEILING} no share is measured (-). Medians of {len({row['round'] for row in rows})} "
-            f"rounds (`{THREADS[1]}`; {stored.origin(THREADS[0])}). Rock piles:\n\n" +
+            f"rounds (`{THREADS[1]}`; {stored.origin(THREADS[0])}){f'; {far}' if far else ''}. Rock piles:\n\n" +
             text.table(["rocks", "cfm", *(f"`{solver}`" for solver in solvers)], lines) +
             f"\n\n`schur` on Large Rock Pile, the least of {len({share.combination for share in large})} combinations:\n\n" +
             text.table([f"step {step}" for step in least],

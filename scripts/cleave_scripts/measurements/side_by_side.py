@@ -16,7 +16,7 @@ class Way:
 
 WAYS = (Way("one thread", 1, 1), Way("two threads", 2, 1), Way("side by side", 1, 2))
 ATTEMPTS = 3
-MEDIANS = ("t_s_ms", "t_s_waiting_ms")  # over the processes
+MEDIANS = ("t_s_ms", "t_s_waiting_ms", "core_round_trip_ns")  # over the processes
 
 
 def solve(program, scratch, files, repeats, way, *options):

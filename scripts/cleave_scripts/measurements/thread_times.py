@@ -1,9 +1,11 @@
 """Medians of what scripts/two_threads and scripts/busy_machine measured.
 
 Two threads are held against what two independent solves on one thread each reach side by side in the same run: the
-ceiling, 2 on an ideal machine, less where cores share caches, memory or a clock.
+ceiling, 2 on an ideal machine, less where cores share caches, memory or a clock. Rounds of two threads on cores far apart
+say more of where a virtual machine was put, and are left out.
 """
 import dataclasses
+import math
 import statistics
 
 from cleave_scripts.measurements.side_by_side import WAYS
@@ -11,12 +13,14 @@ from cleave_scripts.results.errors import ResultError
 from cleave_scripts.table import text
 
 LEAST_CEILING = 1.7  # below it a share says more of the machine
+FAR_NS = 300  # core_round_trip_ns from which cores are far apart, as the program says
 KEY = ("scene", "bodies", "cfm", "step", "solver", "partitioner", "refiner")
 
 
 @dataclasses.dataclass(frozen=True)
 class Share:
-    """Of a recorded step, solver and combination; times are medians over the rounds."""
+    """Of a recorded step, solver and combination; times are medians over the rounds, of two threads over those on cores near
+    each other."""
     scene: str
     bodies: int
     cfm: float
@@ -24,8 +28,10 @@ class Share:
     solver: str
     combination: str
     one_ms: float  # one thread alone
-    two_ms: float  # two threads
+    two_ms: float  # two threads; NaN where no round of them counts
     beside_ms: float  # one thread beside another
+    far_rounds: int  # of two threads, left out
+    rounds: int
 
     @property
     def ratio(self):
@@ -41,7 +47,7 @@ class Share:
 
     @property
     def measured(self):
-        return self.ceiling >= LEAST_CEILING
+        return self.ceiling >= LEAST_CEILING and self.far_rounds < self.rounds
 
 
 def _medians(rows, *columns):
@@ -52,19 +58,30 @@ def _medians(rows, *columns):
     return {key: statistics.median(values) for key, values in times.items()}
 
 
+def is_far(row):
+    """Rows without the column were measured before there was one."""
+    return float(row.get("core_round_trip_ns", math.nan)) >= FAR_NS
+
+
 def shares(rows):
     """[Share], in the order of the rows"""
-    times = _medians(rows, *KEY, "threads", "processes")
-    return [_share(key, times) for key in dict.fromkeys(key[:len(KEY)] for key in times)]
+    of_cell = {}
+    for row in rows:
+        of_cell.setdefault(tuple(str(row[column]) for column in KEY), []).append(row)
+    return [_share(key, rows_of_cell) for key, rows_of_cell in of_cell.items()]
 
 
-def _share(key, times):
+def _share(key, rows):
     scene, bodies, cfm, step, solver, partitioner, refiner = key
-    try:
-        in_ms = [times[*key, str(way.threads), str(way.processes)] for way in WAYS]
-    except KeyError:
-        raise ResultError(f"two threads: {' '.join(key)} is not there with {', '.join(way.name for way in WAYS)}") from None
-    return Share(scene, int(bodies), float(cfm), int(step), solver, f"{partitioner}+{refiner}", *in_ms)
+    times = _medians([row for row in rows if not is_far(row)], "threads", "processes")
+    ways = [(str(way.threads), str(way.processes)) for way in WAYS]
+    far, rounds = sum(map(is_far, rows)), sum(str(row["threads"]) == "2" for row in rows)
+    if far > 0:
+        times.setdefault(("2", "1"), math.nan)
+    if not all(way in times for way in ways):
+        raise ResultError(f"two threads: {' '.join(key)} is not there with {', '.join(way.name for way in WAYS)}")
+    return Share(scene, int(bodies), float(cfm), int(step), solver, f"{partitioner}+{refiner}", *(times[way] for way in ways), far,
+                 rounds)
 
 
 def of_scene(found, scene):
@@ -82,9 +99,25 @@ def least(found):
                default=max(found, key=lambda share: share.ceiling))
 
 
+def _told(share):
+    if share.measured:
+        return f"{share.share:.2f}"
+    return "not measured: " + ("cores far apart" if share.far_rounds == share.rounds else f"ceiling below {LEAST_CEILING}")
+
+
+def two_digits(value):
+    return "-" if math.isnan(value) else f"{value:.2f}"
+
+
+def far_in_words(found):
+    """Of shares, or nothing."""
+    far, rounds = (sum(getattr(share, name) for share in found) for name in ("far_rounds", "rounds"))
+    return f"{far} of {rounds} replays on two threads were on cores far apart and do not count" if far > 0 else ""
+
+
 def _cells(share):
-    told = f"{share.share:.2f}" if share.measured else f"not measured: ceiling below {LEAST_CEILING}"
-    return [text.number(share.one_ms), f"{share.ratio:.2f}", f"{share.ceiling:.2f}", told]
+    told = _told(share)
+    return [text.number(share.one_ms), two_digits(share.ratio), f"{share.ceiling:.2f}", told]
 
 
 def lines_of_shares(found):
@@ -94,8 +127,9 @@ def lines_of_shares(found):
     large = [[step, least(of_step).combination, *_cells(least(of_step)),
               f"{sum(share.measured for share in of_step)} of {len(of_step)}"]
              for step, of_step in by_step(of_scene(found, "large_rock_pile")).items()]
-    return "\n\n".join([text.table(("rocks", "cfm", "solver", *times, "share"), piles),
-                        text.table(("Large Rock Pile, step", "combination", *times, "least share", "measured"), large)])
+    tables = [text.table(("rocks", "cfm", "solver", *times, "share"), piles),
+              text.table(("Large Rock Pile, step", "combination", *times, "least share", "measured"), large)]
+    return "\n\n".join(tables + [line for line in (far_in_words(found),) if line])
 
 
 def by_load(rows):

@@ -1,0 +1,12 @@
+// How far apart the cores of a solve's threads are: where they share no cache, every line that two threads write in turn
+// takes several times longer, and so do small solves on several threads. A virtual machine may be moved from cores that
+// share one to cores that do not and back, within seconds.
+#pragma once
+
+namespace cleave {
+
+// Nanoseconds that a number takes from one thread of the team of this many to another and back, the least of a few
+// batches, in some 0.1 ms. NaN on one thread and where two threads do not run at the same time.
+double core_round_trip_ns(int threads);
+
+}  // namespace cleave
