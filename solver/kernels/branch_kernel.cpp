@@ -1,7 +1,6 @@
 #include "solver/kernels/branch_kernel.h"
 
 #include <algorithm>
-#include <ranges>
 #include <utility>
 
 namespace cleave {
@@ -115,9 +114,10 @@ void BranchKernel::substitute(ParallelTasks& tasks, const Before& before, const 
         cholesky.forward(branch, x_.data());
       }
     } else {
-      for (const int branch : std::views::reverse(substitution_.branches(2 * count - 1 - task))) {
-        cholesky.backward(branch, x_.data());
-        after(branch);
+      const std::span<const int> upwards = substitution_.branches(2 * count - 1 - task);
+      for (auto branch = upwards.rbegin(); branch != upwards.rend(); ++branch) {
+        cholesky.backward(*branch, x_.data());
+        after(*branch);
       }
     }
   });

@@ -109,7 +109,8 @@ void add_blocks(const StepProblem& problem, SeededRandom& random, LinearSystem& 
     system.d[block.first_row] = random.chance(1.0 / 3) ? 0 : random.log_uniform(1e-2, 1e2);
     system.blocks.push_back(block);
   }
-  std::ranges::stable_partition(system.blocks, [](const WeightBlock& block) { return block.first_row % 2; });
+  std::stable_partition(system.blocks.begin(), system.blocks.end(),
+                        [](const WeightBlock& block) { return block.first_row % 2; });
 }
 
 // B as one matrix (m, m).
