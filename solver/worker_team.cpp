@@ -166,8 +166,8 @@ void WorkerTeam::run(int count, Task task, void* context) {
 }
 
 // An entry; the right to take it follows.
-WorkerTeam::Queue& WorkerTeam::enter(int task, int kind) {
-  Queue& queue = queues_[graph_->home(task, threads_) + kind * threads_];
+WorkerTeam::Queue& WorkerTeam::enter(int task, bool has_waited) {
+  Queue& queue = queues_[graph_->home(task, threads_) + (has_waited ? threads_ : 0)];
   queue.tasks[queue.listed.fetch_add(1, std::memory_order_relaxed)].store(task, std::memory_order_release);
   return queue;
 }
@@ -177,7 +177,7 @@ void WorkerTeam::release_next(int task) {
   bool released = false;
   for (const int next : graph_->next(task)) {
     if (waits_[next].fetch_sub(1, std::memory_order_acq_rel) != 1) continue;
-    enter(next, 1).open.fetch_add(1);
+    enter(next, true).open.fetch_add(1);
     released = true;
   }
   if (released) call_others();
@@ -217,7 +217,7 @@ void WorkerTeam::run(const TaskGraph& graph, Task task, void* context) {
   graph_ = &graph;
   list_first_tasks();
   begin_stage(graph.task_count(), task, context);
-  for (const int first : first_tasks_) enter(first, 0);
+  for (const int first : first_tasks_) enter(first, false);
   for (int k = 0; k < threads_; ++k) queues_[k].open.store(queues_[k].listed.load());
   finish_stage();
 }

@@ -67,7 +67,7 @@ class WorkerTeam {
   void begin_stage(int count, Task task, void* context);
   void finish_stage();
   void list_first_tasks();
-  Queue& enter(int task, int kind);
+  Queue& enter(int task, bool has_waited);
   void release_next(int task);
   int index_of(Queue& queue);
   void take_all(int thread);

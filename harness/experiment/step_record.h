@@ -323,7 +323,7 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit("model_passes", r.model_passes, "solves of the step, one more each time rows came back");
   visit_machine(
       "core_round_trip_ns", r.core_round_trip_ns,
-      "that a number takes from one thread of that solve to another and back, just before it; nan on one");
+      "time of a number from one thread of that solve to another and back, just before it; nan on one");
 }
 
 // "run_id,scene,...\n"

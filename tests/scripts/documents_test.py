@@ -6,6 +6,7 @@ import unittest
 
 from synthetic import ROOT, SCRIPTS, command_files, good_row, run_script
 
+from cleave_scripts.measurements import thread_times
 from cleave_scripts.results.steps import EXACT_LIMIT
 
 # Where each package is looked for or used, and under which of these names. Any other python3-* package has to
@@ -149,6 +150,11 @@ class ColumnsTest(unittest.TestCase):
                          set(re.findall(r"`(\w+)`", sentence)) - {"t_"})
         self.assertIn("`t_...`", sentence)
         self.assertTrue({"t_collide_ms", "t_s_", "t_s_model_p", "t_s_waiting_ms"} <= marked)
+
+    def test_cores_are_far_apart_for_scripts_as_for_the_program(self):
+        summary = (ROOT / "harness" / "experiment" / "run_summary.h").read_text()
+        self.assertEqual(float(re.search(r"kFarNs = (\d+);", summary).group(1)), thread_times.FAR_NS)
+        self.assertIn(f"where it is {thread_times.FAR_NS} or more", (ROOT / "results" / "README.md").read_text())
 
     def test_the_judges_limit_is_one_number(self):
         text = (ROOT / "solver" / "step_problem.h").read_text()

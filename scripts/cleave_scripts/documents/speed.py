@@ -22,7 +22,7 @@ COLD_ROWS = 1000
 
 def _share(share):
     """A cell: the share, and what it is the quotient of."""
-    return f"{f'{share.share:.2f}' if share.measured else '-'} ({thread_times.two_digits(share.ratio)} of {share.ceiling:.2f})"
+    return f"{f'{share.share:.2f}' if share.measured else '-'} ({text.two_decimals(share.ratio)} of {share.ceiling:.2f})"
 
 
 def two_threads(stored):

@@ -105,19 +105,15 @@ def _told(share):
     return "not measured: " + ("cores far apart" if share.far_rounds == share.rounds else f"ceiling below {LEAST_CEILING}")
 
 
-def two_digits(value):
-    return "-" if math.isnan(value) else f"{value:.2f}"
-
-
 def far_in_words(found):
     """Of shares, or nothing."""
-    far, rounds = (sum(getattr(share, name) for share in found) for name in ("far_rounds", "rounds"))
+    far, rounds = sum(share.far_rounds for share in found), sum(share.rounds for share in found)
     return f"{far} of {rounds} replays on two threads were on cores far apart and do not count" if far > 0 else ""
 
 
 def _cells(share):
     told = _told(share)
-    return [text.number(share.one_ms), two_digits(share.ratio), f"{share.ceiling:.2f}", told]
+    return [text.number(share.one_ms), text.two_decimals(share.ratio), f"{share.ceiling:.2f}", told]
 
 
 def lines_of_shares(found):
@@ -129,7 +125,7 @@ def lines_of_shares(found):
              for step, of_step in by_step(of_scene(found, "large_rock_pile")).items()]
     tables = [text.table(("rocks", "cfm", "solver", *times, "share"), piles),
               text.table(("Large Rock Pile, step", "combination", *times, "least share", "measured"), large)]
-    return "\n\n".join(tables + [line for line in (far_in_words(found),) if line])
+    return "\n\n".join(filter(None, [*tables, far_in_words(found)]))
 
 
 def by_load(rows):

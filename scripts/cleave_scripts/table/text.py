@@ -24,6 +24,10 @@ def percent(share):
     return "-" if math.isnan(share) else f"{round(100 * share)} %"
 
 
+def two_decimals(value):
+    return "-" if math.isnan(value) else f"{value:.2f}"
+
+
 def table(header, rows):
     lines = [header, ["---"] * len(header), *rows]
     return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)

@@ -63,8 +63,9 @@ class Lanes:
         tell(text, Tally.of_all(self.tallies))
 
     def _run(self, lane, pipe):
-        """A terminal interrupts all its processes; lanes are told by SIGTERM, once. Programs under trial must not inherit a signal
-        that is ignored, so it is caught. Python drops what is raised in its hooks at a fork: then the lane ends with the trial."""
+        """A terminal interrupts all its processes; lanes are told by SIGTERM, of which the first counts. Programs under trial must
+        not inherit a signal that is ignored, so it is caught. Python drops what is raised in its hooks at a fork: then the lane
+        ends with the trial."""
         signal.signal(signal.SIGINT, lambda *_: None)
         signal.signal(signal.SIGTERM, self._end)
         tally = Tally()
