@@ -1,6 +1,6 @@
 // How far apart the cores of a solve's threads are: where they share no cache, every line that two threads write in turn
-// takes several times longer, and so do small solves on several threads. A virtual machine may be moved from cores that
-// share one to cores that do not and back, within seconds.
+// takes several times longer, and small solves on several threads about twice as long. A virtual machine may be moved from
+// cores that share one to cores that do not and back, within seconds.
 #pragma once
 
 namespace cleave {
