@@ -13,11 +13,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr int kBatches = 4, kTrips = 50;
-constexpr std::chrono::microseconds kPatience{500};  // for both threads, and for all trips
 
 // What two tasks of a team say to each other. Neither waits beyond the end, so that one thread can run both.
 class PingPong {
  public:
+  explicit PingPong(std::chrono::nanoseconds patience) : end_(Clock::now() + patience) {}
+
   void take_part() {
     if (players_.fetch_add(1) == 0) {
       ask();
@@ -57,7 +58,7 @@ class PingPong {
     }
   }
 
-  const Clock::time_point end_ = Clock::now() + kPatience;
+  const Clock::time_point end_;
   double least_ns_ = std::numeric_limits<double>::quiet_NaN();
   std::atomic<int> players_{0};
   alignas(64) std::atomic<int> ping_{0};
@@ -66,9 +67,9 @@ class PingPong {
 
 }  // namespace
 
-double core_round_trip_ns(int threads) {
+double core_round_trip_ns(int threads, std::chrono::nanoseconds patience) {
   if (threads == 1) return std::numeric_limits<double>::quiet_NaN();
-  PingPong game;
+  PingPong game(patience);
   WorkerTeam::shared(threads).run(
       2, [](void* context, int) { static_cast<PingPong*>(context)->take_part(); }, &game);
   return game.least_ns();

@@ -3,10 +3,13 @@
 // cores that share one to cores that do not and back, within seconds.
 #pragma once
 
+#include <chrono>
+
 namespace cleave {
 
 // Nanoseconds that a number takes from one thread of the team of this many to another and back, the least of a few
-// batches, in some 0.1 ms. NaN on one thread and where two threads do not run at the same time.
-double core_round_trip_ns(int threads);
+// batches, in some 0.1 ms. NaN on one thread, and where two threads have not met and done their trips within the patience:
+// a solve does not wait for a core that others keep busy.
+double core_round_trip_ns(int threads, std::chrono::nanoseconds patience = std::chrono::microseconds(500));
 
 }  // namespace cleave

@@ -9,18 +9,9 @@ namespace {
 
 TEST(CoreRoundTrip, OneThreadHasNoOtherCore) { EXPECT_TRUE(std::isnan(core_round_trip_ns(1))); }
 
-// A cache line needs some nanoseconds to any other core, and two threads meet at some time.
+// A cache line needs some nanoseconds to any other core. Two threads meet at some time, however busy the machine is.
 TEST(CoreRoundTrip, IsThatOfACacheLine) {
-  for (const int threads : {2, 3, 7}) {
-    int known = 0;
-    for (int k = 0; k < 200; ++k) {
-      const double ns = core_round_trip_ns(threads);
-      if (std::isnan(ns)) continue;
-      ++known;
-      EXPECT_GT(ns, 5);
-    }
-    EXPECT_GT(known, 0) << threads;
-  }
+  for (const int threads : {2, 3, 7}) EXPECT_GT(core_round_trip_ns(threads, std::chrono::hours(1)), 5) << threads;
 }
 
 }  // namespace
