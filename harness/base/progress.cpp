@@ -2,9 +2,15 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 
 namespace cleave {
+namespace {
+
+constexpr char kSteps[] = "step %d of %d, %ld s, about %ld s to go";  // written and read
+
+}  // namespace
 
 ProgressLine::ProgressLine(std::string label)
     : label_(std::move(label)), terminal_(::isatty(STDERR_FILENO) == 1) {}
@@ -20,8 +26,7 @@ void ProgressLine::update(int done, int total) {
   const double elapsed_s = std::chrono::duration<double>(Clock::now() - begin_).count();
   const double left_s = elapsed_s / done * (total - done);
   char text[100];
-  std::snprintf(text, sizeof text, "step %d of %d, %.0f s, about %.0f s to go", done, total, elapsed_s,
-                left_s);
+  std::snprintf(text, sizeof text, kSteps, done, total, std::lround(elapsed_s), std::lround(left_s));
   show(text);
 }
 
@@ -34,6 +39,16 @@ void ProgressLine::show(const std::string& text) {
   width_ = width;
   std::fprintf(stderr, "%s%s%s", terminal_ ? "\r" : "", line.c_str(), terminal_ ? "" : "\n");
   std::fflush(stderr);
+}
+
+std::optional<double> expected_seconds(const std::string& printed) {
+  const std::size_t place = printed.rfind("step ");
+  int done = 0, total = 0;
+  long elapsed_s = 0, left_s = 0;
+  if (place == std::string::npos ||
+      std::sscanf(printed.c_str() + place, kSteps, &done, &total, &elapsed_s, &left_s) != 4)
+    return std::nullopt;
+  return static_cast<double>(elapsed_s + left_s);
 }
 
 }  // namespace cleave

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 
 namespace cleave {
@@ -14,7 +15,7 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  // Steps done, elapsed and expected time.
+  // Steps done, elapsed and expected time, which expected_seconds reads again.
   void update(int done, int total);
   // For other work: whether it is time for a line, and the line behind the label.
   bool is_due() const;
@@ -29,5 +30,8 @@ class ProgressLine {
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_ = begin_;
 };
+
+// Of work as a whole, as the last line of update() in what it printed tells; nothing where there is none.
+std::optional<double> expected_seconds(const std::string& printed);
 
 }  // namespace cleave

@@ -116,9 +116,11 @@ CellEnd CellProcess::end() const {
   CellEnd end;
   if (WIFEXITED(status_)) end.exit_code = WEXITSTATUS(status_);
   if (WIFSIGNALED(status_)) end.signal = WTERMSIG(status_);
-  end.printed = last_of(printed_);
+  end.printed = printed();
   return end;
 }
+
+std::string CellProcess::printed() const { return last_of(printed_); }
 
 void CellProcess::send(int signal) const { ::kill(pid_, signal); }
 

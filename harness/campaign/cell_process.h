@@ -42,7 +42,8 @@ class CellProcess {
   // Of a process that has ended.
   CellEnd end() const;
   void send(int signal) const;
-  double seconds() const;  // since its start, until its end
+  double seconds() const;       // since its start, until its end
+  std::string printed() const;  // the last of what it has printed so far
 
  private:
   using Clock = std::chrono::steady_clock;

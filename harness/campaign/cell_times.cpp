@@ -1,5 +1,6 @@
 #include "harness/campaign/cell_times.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -23,7 +24,8 @@ void CellTimes::add(const CampaignCell& cell, double seconds) {
   }
 }
 
-void CellTimes::add_running(const CampaignCell& cell, double seconds) {
+void CellTimes::add_running(const CampaignCell& cell, double seconds, std::optional<double> expects_s) {
+  if (expects_s) return add(cell, std::max(*expects_s, seconds));
   const std::optional<double> expected = of(cell);
   if (expected && *expected < seconds) add(cell, 2 * seconds);
 }

@@ -14,9 +14,10 @@ namespace cleave {
 class CellTimes {
  public:
   void add(const CampaignCell& cell, double seconds);
-  // A cell that runs: where that is longer than was expected of it, it is taken to be half done.
-  void add_running(const CampaignCell& cell, double seconds);
-  // Nothing before the first has finished.
+  // A cell that runs: as long as it expects itself; where it has not said, and runs longer than was expected of it, it is taken to
+  // be half done.
+  void add_running(const CampaignCell& cell, double seconds, std::optional<double> expects_s);
+  // Nothing before the first has finished, or has said what it expects.
   std::optional<double> of(const CampaignCell& cell) const;
 
  private:

@@ -247,7 +247,8 @@ class Sweep {
     CellTimes times = times_;
     double spent_s = 0;
     for (const RunningCell& cell : running_) {
-      times.add_running(campaign_.cells()[cell.place], cell.process.seconds());
+      times.add_running(campaign_.cells()[cell.place], cell.process.seconds(),
+                        expected_seconds(cell.process.printed()));
       spent_s += cell.process.seconds();
     }
     const std::optional<double> all_s = campaign_.seconds_left(times, options_.jobs);
