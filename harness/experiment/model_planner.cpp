@@ -168,7 +168,8 @@ SolveSummary ModelPlanner::solve_reduced(StepSolver& solver, const Parts& parts)
   if (reduced_.body_count() > 0) return solver.solve(reduced_, parts, found_);
   Parts none;
   none.kernel = parts.kernel;
-  const SolveSummary summary = solver.solve(reduced_, none, found_);
+  SolveSummary summary = solver.solve(reduced_, none, found_);
+  summary.factorizations = 0;  // that of no bodies is none
   found_.velocity = rest_.velocity();
   return summary;
 }

@@ -252,6 +252,7 @@ TEST(ModelPlanner, EverySolverTakesAStepInWhichAllRests) {
     EXPECT_EQ(summary.status, SolveStatus::ok) << name << ": " << summary.message;
     EXPECT_EQ(counts.rows_at_rest, problem.row_count()) << name;
     EXPECT_EQ(counts.passes, 1) << name;
+    EXPECT_EQ(summary.factorizations, 0) << name;
     EXPECT_EQ(solution.impulse, problem.warm_impulse) << name;
     EXPECT_EQ(solution.velocity, report.velocity) << name;
   }
