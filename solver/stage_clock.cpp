@@ -56,9 +56,13 @@ void StageClock::model_stage(const TaskGraph* graph, std::span<double> task_ms) 
   const double on_one_ms = std::accumulate(task_ms.begin(), task_ms.end(), 0.0);
   const double task_us = graph == nullptr ? dispatch_.task_us : dispatch_.graph_task_us;
   for (double& task : task_ms) task += 1e-3 * (task_us - dispatch_.timing_us);
-  if (graph == nullptr) std::ranges::sort(task_ms, std::greater<>());
+  if (graph == nullptr) {
+    std::ranges::sort(task_ms, std::greater<>());
+  } else {
+    schedule_.begin(*graph, task_ms);
+  }
   const double gain_ms = on_one_ms - 1e-3 * dispatch_.stage_us;
-  const double longest_ms = graph == nullptr ? task_ms.front() : schedule_.critical_path_ms(*graph, task_ms);
+  const double longest_ms = graph == nullptr ? task_ms.front() : schedule_.critical_path_ms();
   // Where so many workers take no more than the longest way, neither do more of them: a schedule takes longer to find than
   // many a stage to run.
   bool is_longest = false;
@@ -68,7 +72,7 @@ void StageClock::model_stage(const TaskGraph* graph, std::span<double> task_ms) 
     is_longest = is_longest || workers >= static_cast<int>(task_ms.size());
     const double taken_ms = is_longest         ? longest_ms
                             : graph == nullptr ? makespan_ms(task_ms, workers, worker_ms_)
-                                               : schedule_.makespan_ms(*graph, task_ms, workers);
+                                               : schedule_.makespan_ms(workers);
     is_longest = taken_ms <= longest_ms;
     times_.model_ms[k] += taken_ms - gain_ms;
   }

@@ -1,9 +1,19 @@
 #include "solver/task_schedule.h"
 
 #include <algorithm>
+#include <bit>
 #include <functional>
+#include <numeric>
 
 namespace cleave {
+namespace {
+
+// As pairs compare, without their three ways.
+bool ends_later(const std::pair<double, int>& a, const std::pair<double, int>& b) {
+  return a.first > b.first || (a.first == b.first && a.second > b.second);
+}
+
+}  // namespace
 
 double makespan_ms(std::span<const double> sorted_descending_ms, int workers,
                    std::vector<double>& worker_ms) {
@@ -12,47 +22,62 @@ double makespan_ms(std::span<const double> sorted_descending_ms, int workers,
   return *std::max_element(worker_ms.begin(), worker_ms.end());
 }
 
-double GraphSchedule::critical_path_ms(const TaskGraph& graph, std::span<const double> task_ms) {
+void GraphSchedule::begin(const TaskGraph& graph, std::span<const double> task_ms) {
+  graph_ = &graph;
+  task_ms_ = task_ms;
   way_ms_.assign(task_ms.begin(), task_ms.end());
-  double longest_ms = 0;
+  longest_ms_ = 0;
   for (int task = graph.task_count() - 1; task >= 0; --task) {
     double after_ms = 0;
     for (const int next : graph.next(task)) after_ms = std::max(after_ms, way_ms_[next]);
     way_ms_[task] += after_ms;
-    longest_ms = std::max(longest_ms, way_ms_[task]);
+    longest_ms_ = std::max(longest_ms_, way_ms_[task]);
   }
-  return longest_ms;
+  task_of_rank_.resize(graph.task_count());
+  std::iota(task_of_rank_.begin(), task_of_rank_.end(), 0);
+  std::ranges::sort(task_of_rank_, {}, [&](int task) { return std::pair(-way_ms_[task], task); });
+  rank_of_task_.resize(graph.task_count());
+  for (int rank = 0; rank < graph.task_count(); ++rank) rank_of_task_[task_of_rank_[rank]] = rank;
+  running_.reserve(graph.task_count());  // how many there are at once depends on the times
 }
 
-double GraphSchedule::makespan_ms(const TaskGraph& graph, std::span<const double> task_ms, int workers) {
-  critical_path_ms(graph, task_ms);
-  const auto add_ready = [&](int task) {
-    ready_.emplace_back(way_ms_[task], -task);  // of two with the same way, the lower number first
-    std::ranges::push_heap(ready_);
-  };
-  ready_.clear();
+void GraphSchedule::add_ready(int task) {
+  const auto rank = static_cast<std::size_t>(rank_of_task_[task]);
+  ready_[rank / 64] |= std::uint64_t{1} << (rank % 64);
+  first_word_ = std::min(first_word_, rank / 64);
+  ++ready_count_;
+}
+
+int GraphSchedule::take_ready() {
+  while (ready_[first_word_] == 0) ++first_word_;
+  const int bit = std::countr_zero(ready_[first_word_]);
+  ready_[first_word_] &= ready_[first_word_] - 1;
+  --ready_count_;
+  return task_of_rank_[64 * first_word_ + bit];
+}
+
+double GraphSchedule::makespan_ms(int workers) {
+  const int count = graph_->task_count();
+  ready_.assign((count + 63) / 64, 0);
+  ready_count_ = 0;
   running_.clear();
-  ready_.reserve(graph.task_count());  // how many there are at once depends on the times
-  running_.reserve(graph.task_count());
-  waits_.resize(graph.task_count());
-  for (int task = 0; task < graph.task_count(); ++task) {
-    waits_[task] = graph.wait_count(task);
+  waits_.resize(count);
+  for (int task = 0; task < count; ++task) {
+    waits_[task] = graph_->wait_count(task);
     if (waits_[task] == 0) add_ready(task);
   }
   double now_ms = 0;
-  while (!ready_.empty() || !running_.empty()) {
-    while (!ready_.empty() && static_cast<int>(running_.size()) < workers) {
-      std::ranges::pop_heap(ready_);
-      const int task = -ready_.back().second;
-      ready_.pop_back();
-      running_.emplace_back(now_ms + task_ms[task], task);
-      std::ranges::push_heap(running_, std::greater<>());
+  while (ready_count_ > 0 || !running_.empty()) {
+    while (ready_count_ > 0 && static_cast<int>(running_.size()) < workers) {
+      const int task = take_ready();
+      running_.emplace_back(now_ms + task_ms_[task], task);
+      std::ranges::push_heap(running_, ends_later);
     }
-    std::ranges::pop_heap(running_, std::greater<>());
+    std::ranges::pop_heap(running_, ends_later);
     const auto [end_ms, task] = running_.back();
     running_.pop_back();
     now_ms = end_ms;
-    for (const int next : graph.next(task)) {
+    for (const int next : graph_->next(task)) {
       if (--waits_[next] == 0) add_ready(next);
     }
   }
