@@ -1,10 +1,7 @@
 #include "harness/experiment/step_record.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <iterator>
-#include <set>
 #include <string_view>
 
 #include "harness/base/csv_text.h"
@@ -25,49 +22,12 @@ std::string cell_text(ColumnOf, const std::string& value) { return csv_cell(valu
 std::string cell_text(ColumnOf, int value) { return std::to_string(value); }
 std::string cell_text(ColumnOf, std::uint64_t value) { return std::to_string(value); }
 
-// In the order in which they came.
-constexpr std::string_view kLate[] = {"partition_seed",  "trials",      "karger_method", "ufactor",
-                                      "scotch_strategy", "effort",      "patience",      "merge_small",
-                                      "split",           "calibration", "cost_kernel",   "cost_threads",
-                                      "lemke_max_rows"};
-
-// Behind them came other columns too.
-constexpr std::string_view kNewest = "restart";
-constexpr std::string_view kBehindBodyOrder[] = {"until", "order", "order_seed", "coloring", "coloring_seed"};
-
-// 0 for all that are not late.
-std::ptrdiff_t late_rank(const std::string& column) {
-  const auto found = std::ranges::find(kLate, column);
-  return found == std::end(kLate) ? 0 : 1 + (found - std::begin(kLate));
-}
-
-ParameterColumn::Place place_of(const std::string& column) {
-  static const std::set<std::string> first = {"max_bodies", "tau_mr", "tau_mix", "max_growth"};
-  if (first.contains(column)) return ParameterColumn::Place::first;
-  if (column == kNewest) return ParameterColumn::Place::newest;
-  if (std::ranges::count(kBehindBodyOrder, column) > 0) return ParameterColumn::Place::behind_body_order;
-  return late_rank(column) > 0 ? ParameterColumn::Place::last : ParameterColumn::Place::among_options;
-}
-
 constexpr const char* type_of(const std::string&) { return "text"; }
 constexpr const char* type_of(double) { return "number"; }
 constexpr const char* type_of(int) { return "integer"; }
 constexpr const char* type_of(std::uint64_t) { return "integer"; }
 
 }  // namespace
-
-std::span<const ParameterColumn> parameter_columns() {
-  static const std::vector<ParameterColumn> columns = [] {
-    std::vector<ParameterColumn> all;
-    for (const CommonParameter& common : common_parameters()) {
-      const std::string name = column_of(common.parameter.name);
-      all.push_back({name, common.parameter.help + "; - where nothing has it", common.about, place_of(name)});
-    }
-    std::ranges::stable_sort(all, {}, [](const ParameterColumn& column) { return late_rank(column.name); });
-    return all;
-  }();
-  return columns;
-}
 
 void StepRecord::add_parameters(const Settings& settings) {
   for (const auto& [name, value] : settings.values())

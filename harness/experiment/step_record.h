@@ -26,6 +26,7 @@
 #include "harness/experiment/cell_measures.h"
 #include "harness/experiment/friction_mismatch.h"
 #include "harness/experiment/model_planner.h"
+#include "harness/experiment/parameter_columns.h"
 #include "partition/partition.h"
 #include "solver/residual.h"
 #include "solver/step_solver.h"
@@ -35,17 +36,6 @@ namespace cleave {
 // In the column schema_version of every row. Counts up when a column changes its meaning; new ones come at
 // the end.
 inline constexpr const char* kStepsSchema = "cleave-steps-5";
-
-// A column of a parameter of algorithms (algorithms.h). Those of the first tables stand first; some came when
-// there were others behind them, and stand last.
-struct ParameterColumn {
-  enum class Place { first, among_options, last, newest, behind_body_order };
-
-  std::string name, help;
-  About about;
-  Place place;
-};
-std::span<const ParameterColumn> parameter_columns();
 
 // Who a column is about. The machine's may differ between two runs of the same experiment, all others may
 // not.
@@ -185,7 +175,7 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
       if (column.place == place)
         visit(column.name, r.parameter(column.name), column.help.c_str(), column.about);
   };
-  visit_parameters(ParameterColumn::Place::first);
+  visit_parameters(ParameterColumn::Place::after_status);
   visit("bodies", r.bodies, "dynamic bodies");
   visit("contacts", r.contacts, "contact points");
   visit("contact_cap_hits", r.contact_cap_hits, "geom pairs that reached the contact cap");
@@ -283,7 +273,7 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
       "how far a contact may move and still be that of the last step, in least extents of the smaller shape",
       About::problem);
   visit("contact_cap", r.contact_cap, "most contact points of a geom pair", About::problem);
-  visit_parameters(ParameterColumn::Place::among_options);
+  visit_parameters(ParameterColumn::Place::after_contact_cap);
   visit("skip_small_islands", r.skip_small_islands, "1 where small islands are one part each, else 0",
         About::partition);
   visit("cold", r.cold, "1 where solves start from zero impulses, 0 where from those of the last step",
@@ -304,7 +294,7 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit("cg_iterations", r.cg_iterations, "iterations of conjugate gradients with such a factor");
   visit("factor_mflop_done", r.factor_mflop_done,
         "Mflop of all factorisations of the solve, less what was kept of the one before");
-  visit_parameters(ParameterColumn::Place::last);
+  visit_parameters(ParameterColumn::Place::after_factor_mflop_done);
   visit("repartition", r.repartition, "when steps are split anew, as given", About::partition);
   visit("partition_origin", r.partition_origin,
         "fresh, repaired or kept: where the parts of the step come from");
@@ -312,9 +302,9 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
         "partitioner+refiner/kernel that the partitioner auto chose, the kernel being that of the model");
   visit("friction_beyond_share", r.friction_beyond_share,
         "share of the same friction rows whose |impulse| is above mu n (1 + 1e-9)");
-  visit_parameters(ParameterColumn::Place::newest);
+  visit_parameters(ParameterColumn::Place::after_friction_beyond_share);
   visit("body_order", r.body_order, "numbers by which bodies are split, as given", About::partition);
-  visit_parameters(ParameterColumn::Place::behind_body_order);
+  visit_parameters(ParameterColumn::Place::after_body_order);
   visit("model", r.model, "full: every row is solved; auto: those that can matter", About::solver);
   visit("model_rows_left_out", r.model_rows_left_out, "rows that the first solve left at impulse 0");
   visit("model_rows_at_rest", r.model_rows_at_rest,
@@ -324,6 +314,7 @@ void visit_fields(const StepRecord& r, Visitor&& visitor) {
   visit_machine(
       "core_round_trip_ns", r.core_round_trip_ns,
       "time of a number from one thread of that solve to another and back, just before it; nan on one");
+  visit_parameters(ParameterColumn::Place::at_end);
 }
 
 // "run_id,scene,...\n"
