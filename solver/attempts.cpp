@@ -72,6 +72,7 @@ bool Attempts::run_chain(SolveState& state, std::span<const double> warm_impulse
 // steps the active set mostly stays: then a step is a correction by the factor at hand.
 bool Attempts::run_proximal(SolveState& state) {
   const double target = state.options.target_m_per_s * state.step->velocity_scale();
+  const double tolerance = state.violation_tolerance();
   proximal_best_.clear();
   if (!state.factor_free()) return false;
   for (int k = 0, stalled = 0; k < kMostProximalSteps && stalled < kStalledProximalSteps; ++k) {
@@ -82,8 +83,8 @@ bool Attempts::run_proximal(SolveState& state) {
     stalled = residual < 0.9 * proximal_best_.residual ? 0 : stalled + 1;
     proximal_best_.offer(state);
     ++state.summary->refinements;
-    state.refine_free(0.1 * target, 3, false);
-    if (state.find_violations(0.1 * target) == 0 || state.settle(0.1 * target)) continue;
+    state.refine_free(tolerance, SolveState::kSearchRefinements, false);
+    if (state.find_violations(tolerance) == 0 || state.settle(tolerance)) continue;
     state.begin(*state.step, *state.kernel, *state.summary, proximal_best_.impulse);
     if (!run_chain(state, proximal_best_.impulse)) break;
   }

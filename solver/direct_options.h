@@ -1,5 +1,4 @@
-// What solvers are told: the options of every direct one (strategy:kernel), and the parameters that strategies, kernels and
-// baselines declare in the registry.
+// What direct solvers (strategy:kernel) are told beside the options of every solver.
 #pragma once
 
 #include "harness/base/parameter.h"
@@ -16,19 +15,4 @@ struct DirectOptions : SolveOptions {
 // Parameters that the settings do not have take their defaults.
 DirectOptions read_direct_options(const SolveOptions& options, const Settings& settings = {});
 
-namespace parameters {
-
-const Parameter& max_iterations();
-const Parameter& predictor_sweeps();
-const Parameter& reuse_analysis();
-const Parameter& sweeps();
-const Parameter& until();
-const Parameter& order();
-const Parameter& order_seed();
-const Parameter& coloring();
-const Parameter& coloring_seed();
-const Parameter& lemke_max_rows();
-const Parameter& arity();
-
-}  // namespace parameters
 }  // namespace cleave

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "harness/base/median.h"
 #include "solver/parallel_tasks.h"
 #include "solver/task_graph.h"
 #include "solver/worker_team.h"
@@ -45,8 +46,7 @@ double median_us(const Work& work) {
     spin(kGap);
     one_us = time_us(work);
   }
-  std::ranges::nth_element(times_us, times_us.begin() + kTries / 2);
-  return times_us[kTries / 2];
+  return median_in_place(times_us);
 }
 
 void empty_task(void*, int) {}

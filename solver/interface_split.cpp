@@ -1,12 +1,12 @@
 #include "solver/interface_split.h"
+#include "solver/parts.h"
 
 #include <algorithm>
 
 namespace cleave {
 
 void InterfaceSplit::split(const PreparedStep& step, std::span<const int> part_of_body) {
-  part_count = 0;
-  for (int part : part_of_body) part_count = std::max(part_count, part + 1);
+  part_count = count_parts(part_of_body);
   if (static_cast<int>(parts.size()) < part_count) parts.resize(part_count);
   for (PartRows& part : parts) {
     part.bodies.clear();

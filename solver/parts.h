@@ -9,6 +9,7 @@
 //                   not look at it.
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <span>
 #include <string>
@@ -31,6 +32,11 @@ struct Parts {
   std::span<const int> parent_of_part;
   std::string_view kernel;
 };
+
+// Ids are 0..parts-1: one more than the greatest, 0 of no bodies.
+inline int count_parts(std::span<const int> part_of_body) {
+  return part_of_body.empty() ? 0 : 1 + std::ranges::max(part_of_body);
+}
 
 // Keeps its scratch, so that parts as large as those before allocate nothing.
 class PartsCheck {

@@ -15,21 +15,8 @@ namespace {
 using Matrix6 = Eigen::Matrix<double, 6, 6, Eigen::RowMajor>;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
-constexpr int kLeastChunkRows = 384, kMostChunkRows = 512, kChunkBodies = 48;
-
-// Ranges of whole items with at least `least` of what size_of counts, but for the last.
-template <class Size>
-void cut_into_chunks(int count, int least, const Size& size_of, std::vector<Chunk>& chunks) {
-  chunks.clear();
-  int size = 0;
-  for (int i = 0, first = 0; i < count; ++i) {
-    size += size_of(i);
-    if (size < least && i + 1 < count) continue;
-    chunks.push_back({first, i + 1});
-    first = i + 1;
-    size = 0;
-  }
-}
+// Of rows a chunk is a sixteenth, within limits, so that 16 workers have one each.
+constexpr int kMostChunkRows = 512, kChunkBodies = 48;
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/chunks.h"
 #include "solver/impulse_set.h"
 #include "solver/parallel_tasks.h"
 #include "solver/step_problem.h"
@@ -19,12 +20,6 @@ struct RowGroup {
   int body_b = -1;
   int first_row = 0;
   int row_count = 0;
-};
-
-// Rows and bodies that one task works on: about as many rows or bodies as take some microseconds. Chunks depend on the
-// problem alone. Of rows it is a sixteenth, within limits, so that 16 workers have one each.
-struct Chunk {
-  int first = 0, last = 0;  // groups, or bodies: first .. last - 1
 };
 
 // What is done with the rows first .. last - 1 of a chunk of groups, the index of which is the third number. Handed to what

@@ -2,19 +2,22 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 
 #include "harness/base/names.h"
 #include "solver/baselines/baselines.h"
-#include "solver/direct_options.h"
 #include "solver/direct_solver.h"
 #include "solver/kernels/kernel.h"
+#include "solver/parameters.h"
 #include "solver/strategies/strategy.h"
 
 namespace cleave {
 namespace {
 
 using namespace parameters;
+using Kind = Parameter::Kind;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // The first row of that name, or nullptr.
 template <class Row>
@@ -122,7 +125,14 @@ std::span<const KernelRow> kernel_table() {
       {{"schur-nested",
         "parts in a tree, interfaces of bodies at every level",
         "George 1973; Karypis and Kumar 1998",
-        {reuse_analysis(), arity()}},
+        {reuse_analysis(),
+         {.name = "arity",
+          .kind = Kind::integer,
+          .default_value = "2",
+          .range = {2, 64},
+          .help =
+              "parts that a set of bodies is split into, again and again until each has at most max-bodies",
+          .source = "Karypis and Kumar 1998"}}},
        true,
        "schur-nested",
        make_schur_nested_kernel},
@@ -151,7 +161,14 @@ std::span<const SolverRow> solver_table() {
       {{"pgs",
         "projected Gauss-Seidel, constraint by constraint, in several orders",
         "Catto 2005; Poulsen, Niebe and Erleben 2010",
-        {sweeps(), until(), order(), order_seed()}},
+        {sweeps(),
+         until(),
+         order(),
+         {.name = "order-seed",
+          .kind = Kind::integer,
+          .default_value = "1",
+          .range = {0, kInfinity},
+          .help = "seed of the dice of order=random"}}},
        false,
        nullptr,
        nullptr,
@@ -159,7 +176,19 @@ std::span<const SolverRow> solver_table() {
       {{"pgs-colored",
         "projected Gauss-Seidel, groups of rows of one colour in parallel",
         "Fratarcangeli, Tibaldo, Pellacini 2016",
-        {sweeps(), until(), coloring(), coloring_seed()}},
+        {sweeps(),
+         until(),
+         {.name = "coloring",
+          .kind = Kind::word,
+          .default_value = "greedy",
+          .words = {"greedy", "vivace"},
+          .help = "how pgs-colored finds colours: one group after another, or by chance",
+          .source = "solver/group_coloring.h"},
+         {.name = "coloring-seed",
+          .kind = Kind::integer,
+          .default_value = "1",
+          .range = {0, kInfinity},
+          .help = "seed of the dice of coloring=vivace"}}},
        false,
        nullptr,
        nullptr,
@@ -199,7 +228,12 @@ std::span<const SolverRow> solver_table() {
       {{"lemke",
         "Lemke's complementary pivots, lexicographic, dense",
         "Lemke 1965; Cottle, Pang and Stone 1992, section 4.4",
-        {lemke_max_rows()}},
+        {{.name = "lemke-max-rows",
+          .kind = Kind::integer,
+          .default_value = "500",
+          .range = {0, kInfinity},
+          .help = "rows above which lemke refuses a step: its time grows with their cube",
+          .source = "solver/baselines/lemke.cpp"}}},
        false,
        nullptr,
        nullptr,

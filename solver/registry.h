@@ -1,5 +1,6 @@
 // The tables of solvers, strategies and kernels that `cleave list`, the command line and the tests iterate.
-// A new strategy, kernel or baseline is one new file and one row here (registry.cpp).
+// A new strategy, kernel or baseline is one new file, its make_...() declared in strategy.h, kernel.h or baselines.h, and one row here
+// (registry.cpp).
 #pragma once
 
 #include <memory>

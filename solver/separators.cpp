@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/counting_sort.h"
+#include "solver/parts.h"
 #include "solver/vertex_cover.h"
 
 namespace cleave {
@@ -16,8 +17,7 @@ void Separators::find(const PreparedStep& step, const Parts& parts) {
 }
 
 void Separators::read_tree(const Parts& parts) {
-  part_count_ = 0;
-  for (const int part : parts.part_of_body) part_count_ = std::max(part_count_, part + 1);
+  part_count_ = count_parts(parts.part_of_body);
   if (parts.parent_of_part.empty()) {
     node_count_ = part_count_ + 1;
     parent_.assign(node_count_, part_count_);

@@ -19,6 +19,7 @@
 #include <span>
 #include <vector>
 
+#include "harness/base/larger_or_nan.h"
 #include "solver/direct_options.h"
 #include "solver/kernels/kernel.h"
 #include "solver/prepared_step.h"
@@ -83,6 +84,12 @@ struct SolveState {
   // after: with the new w of a chunk.
   void correct_free(const RowWork& after = {});
 
+  // What a row may be violated by while an active set is looked for, m/s: a tenth of the residual aimed at.
+  double violation_tolerance() const { return 0.1 * options.target_m_per_s * step->velocity_scale(); }
+
+  // Most corrections of an answer of which only the violations are counted, and of one that stays.
+  static constexpr int kSearchRefinements = 3, kLastRefinements = 2;
+
   // correct_free until w on the free rows is below `target` or no longer falls; returns the largest |w| left.
   double refine_free(double target, int most_steps, bool count);
 
@@ -138,8 +145,8 @@ struct SolveState {
   std::vector<WeightBlock> blocks;  // of the present factor: the axes of the set, then one a cone
   std::vector<double> shift;        // (cones) m/s, zero but for Coulomb's law; empty where no cone is
   std::vector<double> f_v, f_r, dv, dlambda;  // right-hand sides and increments
-  // In a session: rows that a solve left in another state than the warm start had told; all where its strategy does not say.
-  // The last solve's, and this one's.
+  // In a session: how many rows ended in another state than the warm start told, in the last solve and in this one. The greatest
+  // number where the strategy does not say.
   int last_changed_rows = std::numeric_limits<int>::max(), changed_rows = std::numeric_limits<int>::max();
   std::vector<int> violated;        // rows found by find_violations
   std::vector<double> row_impulse;  // (m) scratch: impulses in rows where a box is turned
@@ -168,20 +175,14 @@ double SolveState::greatest_over_chunks(const Value& value_of) {
 
 inline double SolveState::greatest_of(std::span<const double> values) {
   double greatest = 0;
-  for (const double value : values) {
-    if (!(value <= greatest)) greatest = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
-  }
+  for (const double value : values) greatest = larger_or_infinite(greatest, value);
   return greatest;
 }
 
 template <class Value>
 double SolveState::greatest_of(int first, int last, const Value& value_of) {
   double greatest = 0;
-  for (int r = first; r < last; ++r) {
-    const double value = value_of(r);
-    if (value <= greatest) continue;
-    greatest = value > greatest ? value : std::numeric_limits<double>::infinity();
-  }
+  for (int r = first; r < last; ++r) greatest = larger_or_infinite(greatest, value_of(r));
   return greatest;
 }
 

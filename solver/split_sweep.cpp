@@ -71,17 +71,13 @@ void SplitSweep::split_diagonal() {
 
 // Small domains are put together, so that a task pays.
 void SplitSweep::cut_tasks() {
-  constexpr int kLeastRows = 384;
-  const int domains = static_cast<int>(first_of_domain_.size()) - 1;
-  domain_chunks_.clear();
-  for (int domain = 0, first = 0, rows = 0; domain < domains; ++domain) {
+  const auto rows_of = [&](int domain) {
+    int rows = 0;
     for (int i = first_of_domain_[domain]; i < first_of_domain_[domain + 1]; ++i)
       rows += step_->groups()[groups_[i]].row_count;
-    if (rows < kLeastRows && domain + 1 < domains) continue;
-    domain_chunks_.push_back({first, domain + 1});
-    first = domain + 1;
-    rows = 0;
-  }
+    return rows;
+  };
+  cut_into_chunks(static_cast<int>(first_of_domain_.size()) - 1, kLeastChunkRows, rows_of, domain_chunks_);
 }
 
 void SplitSweep::run(std::span<double> impulse, std::span<double> v, ParallelTasks& tasks) {

@@ -1,8 +1,9 @@
-// The median; of an even number of values the mean of the middle two.
+// Medians: of an even number of values the mean of the middle two, or the lower of them where it is to be one that occurs.
 #pragma once
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -18,5 +19,13 @@ inline double median_in_place(std::span<double> values) {
 }
 
 inline double median(std::vector<double> values) { return median_in_place(values); }
+
+// NaN of no values.
+inline double lower_median(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + (values.size() - 1) / 2;
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
 
 }  // namespace cleave

@@ -1,4 +1,4 @@
-// The commands of the program. To add one: a file in this folder and a row in command.cpp.
+// The commands of the program. To add one: a file in this folder, declared here, and a row in command.cpp.
 #pragma once
 
 #include <CLI/App.hpp>

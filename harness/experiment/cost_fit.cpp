@@ -7,17 +7,11 @@
 #include <map>
 #include <tuple>
 
+#include "harness/base/median.h"
 #include "harness/base/nonnegative_least_squares.h"
 
 namespace cleave {
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 CostFeatures features_of(const CostSample& sample, double active_share) {
   return CostCounter(sample.graph, sample.kernel, active_share)
@@ -108,7 +102,7 @@ KernelCost fit_cost(std::span<const CostSample> samples) {
     terms.push_back(ExpectedFactorizations::terms(features));
   }
   cost.factorizations = fit_factorizations(samples, terms);
-  if (!shares.empty()) cost.active_share = median(std::move(shares));
+  if (!shares.empty()) cost.active_share = lower_median(std::move(shares));
   for (int group = 0; group < kCostGroups; ++group) fit_group(samples, units, group, cost);
   return cost;
 }
@@ -126,7 +120,7 @@ double median_error(std::span<const CostSample> samples, const KernelCost& cost,
   std::vector<double> errors;
   for (const CostSample& sample : samples)
     errors.push_back(std::abs(modelled_ms(sample, cost, counted) / sample.t_s_ms - 1));
-  return median(std::move(errors));
+  return lower_median(std::move(errors));
 }
 
 double median_cell_error(std::span<const CostSample> samples, const KernelCost& cost) {
@@ -141,7 +135,7 @@ double median_cell_error(std::span<const CostSample> samples, const KernelCost& 
   }
   std::vector<double> errors;
   for (const auto& [cell, sums] : cells) errors.push_back(std::abs(sums.modelled_ms / sums.measured_ms - 1));
-  return median(std::move(errors));
+  return lower_median(std::move(errors));
 }
 
 }  // namespace cleave

@@ -7,6 +7,7 @@
 
 #include "harness/base/csv_text.h"
 #include "harness/base/larger_or_nan.h"
+#include "harness/base/median.h"
 #include "harness/base/numbers.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/friction_box.h"
@@ -71,8 +72,7 @@ TimedSolve solve_timed(const StepProblem& problem) {
     t_s_ms = summary.times.total_ms;
     result.velocity = std::move(solution.velocity);
   }
-  std::ranges::nth_element(times, times.begin() + kTimedSolves / 2);
-  result.t_s_ms = times[kTimedSolves / 2];
+  result.t_s_ms = median_in_place(times);
   return result;
 }
 

@@ -16,7 +16,7 @@
 #include "harness/base/stopwatch.h"
 #include "harness/peers/dense_problem.h"
 #include "harness/peers/peer.h"
-#include "solver/direct_options.h"
+#include "solver/parameters.h"
 
 namespace cleave {
 namespace {

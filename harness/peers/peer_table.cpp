@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "harness/peers/peer_solver.h"
-#include "solver/direct_options.h"
+#include "solver/parameters.h"
 
 namespace cleave {
 namespace {

@@ -23,6 +23,7 @@
 #include <cmath>
 #include <limits>
 
+#include "harness/base/larger_or_nan.h"
 #include "solver/baselines/baselines.h"
 #include "solver/baselines/iterative_baseline.h"
 
@@ -179,9 +180,7 @@ double Apgd::residual(const PreparedStep& step, const Point& point) {
     greatest = step.set().residual(first, last, step.diagonal(), point.impulse, point.slack);
   });
   double greatest = 0;
-  for (const double value : chunk_values_) {
-    if (!(value <= greatest)) greatest = std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
-  }
+  for (const double value : chunk_values_) greatest = larger_or_infinite(greatest, value);
   return greatest;
 }
 

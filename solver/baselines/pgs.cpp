@@ -4,8 +4,8 @@
 #include "solver/baselines/baselines.h"
 #include "solver/baselines/constraint_order.h"
 #include "solver/baselines/iterative_baseline.h"
-#include "solver/direct_options.h"
 #include "solver/gauss_seidel.h"
+#include "solver/parameters.h"
 
 namespace cleave {
 namespace {

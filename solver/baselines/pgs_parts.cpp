@@ -11,6 +11,7 @@
 #include "solver/baselines/colored_groups.h"
 #include "solver/baselines/iterative_baseline.h"
 #include "solver/counting_sort.h"
+#include "solver/parts.h"
 
 namespace cleave {
 namespace {
@@ -30,8 +31,7 @@ class PgsParts : public SweepingBaseline {
 
   void begin(const PreparedStep& step) override {
     const std::span<const RowGroup> groups = step.groups();
-    part_count_ = 0;
-    for (const int part : part_of_body()) part_count_ = std::max(part_count_, part + 1);
+    part_count_ = count_parts(part_of_body());
     sort_into_buckets(
         static_cast<int>(groups.size()), part_count_, [&](int g) { return part_of(groups[g]); },
         first_inside_, inside_);

@@ -5,7 +5,7 @@
 //
 // which is (M + J^T D J) dv = f_v + J^T D f_r with dlambda = D (f_r - J dv). D is diagonal or, per contact, a
 // symmetric 3x3 block in a basis, on whose rows J, f_r and dlambda are those along the basis (row_weights.h).
-// Adding a kernel: one new file in this folder and one row in registry.cpp.
+// Adding a kernel: one new file in this folder, its make_...() declared below, and one row in registry.cpp.
 #pragma once
 
 #include <memory>

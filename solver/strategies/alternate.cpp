@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "solver/parts.h"
 #include "solver/strategies/strategy.h"
 
 namespace cleave {
@@ -25,14 +26,14 @@ class Alternate : public Strategy {
   bool run(SolveState& state) override {
     find_groups(state);
     state.states_from_impulses();
-    const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
+    const double tolerance = state.violation_tolerance();
     for (int round = 0; round < state.options.max_iterations; ++round) {
       ++state.summary->iterations;
       if (!pivot(state, true, tolerance) || !pivot(state, false, tolerance)) return false;
       // The interface impulses are new: are the interior rows still consistent?
       if (state.find_violations(tolerance) == 0) {
         StageTimer timer(state.tasks.clock(), Stage::refine);
-        state.refine_free(0.1 * tolerance, 2, true);
+        state.refine_free(0.1 * tolerance, SolveState::kLastRefinements, true);
         return state.residual() <= state.step->exact_limit_m_per_s();
       }
     }
@@ -43,8 +44,7 @@ class Alternate : public Strategy {
   // group_[r]: the part of an interior row; the interface counts as one more part.
   void find_groups(const SolveState& state) {
     const StepProblem& problem = state.step->problem();
-    group_count_ = 1;
-    for (int part : state.part_of_body) group_count_ = std::max(group_count_, part + 2);
+    group_count_ = count_parts(state.part_of_body) + 1;
     group_.resize(problem.row_count());
     for (int r = 0; r < problem.row_count(); ++r) {
       const int a = problem.row_body[2 * r], b = problem.row_body[2 * r + 1];
@@ -96,7 +96,9 @@ class Alternate : public Strategy {
       if (is_cut(static_cast<int>(r)) && state.state[r] == RowState::free) state.state[r] = RowState::held;
     }
     const bool factored = state.factor_free();
-    if (factored) state.refine_free(0.1 * state.options.target_m_per_s, 3, false);
+    // To less than what counts as a violation: the other side starts from it.
+    if (factored)
+      state.refine_free(0.1 * state.options.target_m_per_s, SolveState::kSearchRefinements, false);
     for (RowState& row : state.state) {
       if (row == RowState::held) row = RowState::free;
     }

@@ -190,11 +190,8 @@ double ConeBarrier::rounding(SolveState& state, std::span<const double> row_velo
     const LaneVector of_compliance = {c.n * dlambda.n, c.u * dlambda.u, c.v * dlambda.v};
     const LaneVector weighed = to_second_order(four.mu, inverse * scaled) + of_compliance;
     const LaneVector left = four.load(state.f_r) - four.load(row_velocity) - weighed;
-    for (const Lanes& entries : {left.n, left.u, left.v}) {
-      const double largest = entries.abs().maxCoeff<Eigen::PropagateNaN>();
-      if (!(largest <= worst_[chunk]))
-        worst_[chunk] = std::isnan(largest) ? std::numeric_limits<double>::infinity() : largest;
-    }
+    for (const Lanes& entries : {left.n, left.u, left.v})
+      worst_[chunk] = larger_or_infinite(worst_[chunk], entries.abs().maxCoeff<Eigen::PropagateNaN>());
   });
   return std::ranges::max(worst_);
 }

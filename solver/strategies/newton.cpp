@@ -23,6 +23,7 @@ namespace {
 
 constexpr double kLeastCompliance = 1e-15;  // of d_r
 constexpr int kPredictorSweeps = 5;
+constexpr int kMostRefinements = 8;  // of the exact solve at the end
 
 class Newton : public Strategy {
  public:
@@ -64,10 +65,10 @@ class Newton : public Strategy {
 
   // An exact solve on the present states ends the search when it violates nothing.
   bool finish(SolveState& state) {
-    const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
+    const double tolerance = state.violation_tolerance();
     if (state.state == last_state_) {
       if (!state.factor_free()) return false;
-      state.refine_free(0.1 * tolerance, 8, true);
+      state.refine_free(0.1 * tolerance, kMostRefinements, true);
       if (state.find_violations(tolerance) == 0) return state.residual() <= state.step->exact_limit_m_per_s();
     }
     last_state_ = state.state;

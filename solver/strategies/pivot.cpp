@@ -18,7 +18,10 @@ namespace cleave {
 namespace {
 
 constexpr int kRestartSweeps = 30;
-// Enough sweeps where five of them move no more than this share of the rows to or from a bound.
+// Enough sweeps to start from, options.predictor_sweeps at most, where five of them move no more than this share of the rows to or
+// from a bound. Five cost about a tenth of a factorisation with what goes with it. Six recorded steps of a pile of 200 boxes
+// (cfm 1e-5) take 53 factorisations from a cold start after 10 sweeps each, 26 after 40 and 21 after 80; over piles of 200 to 800,
+// towers and chains, cold and warm, the time was least, by 1 to 15 %, with this share and at most 60 or 80 sweeps.
 constexpr double kSettledShare = 0.003;
 // An iteration makes progress when it leaves less than this share of the least number of violations so far.
 constexpr double kProgress = 0.75;
@@ -38,24 +41,20 @@ int count_changes(const std::vector<RowState>& before, const std::vector<RowStat
   return changed;
 }
 
-// Sweeps to start from, options.predictor_sweeps at most: a batch of five costs about a tenth of a factorisation with
-// what goes with it. Six recorded steps of a pile of 200 boxes (cfm 1e-5) take 53 factorisations from a cold start after
-// 10 sweeps each, 26 after 40 and 21 after 80; over piles of 200 to 800, towers and chains, cold and warm, the time was
-// least, by 1 to 15 %, with this share and at most 60 or 80 sweeps.
 class Pivot : public Strategy {
  public:
   bool run(SolveState& state) override {
     is_bound_ = false;
     clamp(state);
     warm_state_ = state.state;
-    const double tolerance = 0.1 * state.options.target_m_per_s * state.step->velocity_scale();
+    const double tolerance = state.violation_tolerance();
     if (!starts_settled(state, tolerance)) sweep(state, state.options.predictor_sweeps);
     state.changed_rows = state.step->row_count();
     int least = std::numeric_limits<int>::max(), stalled = 0;
     for (int k = 0; k < state.options.max_iterations; ++k) {
       ++state.summary->iterations;
       if (!state.factor_free()) return false;
-      state.refine_free(tolerance, 3, false);
+      state.refine_free(tolerance, SolveState::kSearchRefinements, false);
       const int count = state.find_violations(tolerance);
       if (count == 0) return finish(state, tolerance);
       const bool few = count <= kFewViolations;
@@ -120,7 +119,7 @@ class Pivot : public Strategy {
 
   bool finish(SolveState& state, double tolerance) {
     StageTimer timer(state.tasks.clock(), Stage::refine);
-    state.refine_free(0.1 * tolerance, 2, true);
+    state.refine_free(0.1 * tolerance, SolveState::kLastRefinements, true);
     state.changed_rows = count_changes(warm_state_, state.state);
     return state.residual() <= state.step->exact_limit_m_per_s();
   }

@@ -1,7 +1,7 @@
 // A strategy finds the active set of a step problem: which rows are free (w = 0) and which sit at a bound.
 //
 // It works on a SolveState and any kernel, and ends with impulses refined to options.target_m_per_s. Adding a
-// strategy: one new file in this folder and one row in registry.cpp.
+// strategy: one new file in this folder, its make_...() declared below, and one row in registry.cpp.
 #pragma once
 
 #include <memory>
