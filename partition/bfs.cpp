@@ -23,7 +23,7 @@ class QueueChooser final : public Chooser {
   int seed(const Growth& growth) override {
     queue_.clear();
     head_ = 0;
-    while (!growth.is_left(lowest_left_)) ++lowest_left_;
+    lowest_left_ = growth.lowest_left(lowest_left_);
     return lowest_left_;
   }
 

@@ -38,12 +38,12 @@ struct PartCost {
 
 struct CostFeatures {
   CostKernel kernel = CostKernel::schur_rows;
-  std::vector<PartCost> parts;    // of monolithic one
-  int bodies = 0, edges = 0;      // of the graph
-  double mass_spread = 0;         // standard deviation of ln(mass), of its bodies
-  int rows = 0;                   // of the step
-  int cut_rows = 0;               // 0 for monolithic
-  int cover_bodies = 0;           // of the vertex cover that schur-bodies takes; 0 for others
+  std::vector<PartCost> parts;  // of monolithic one
+  int bodies = 0, edges = 0;    // of the graph
+  double mass_spread = 0;       // standard deviation of ln(mass), of its bodies
+  int rows = 0;                 // of the step
+  int cut_rows = 0;             // 0 for monolithic
+  int cover_bodies = 0;         // of a greedy cover of the cut; the kernel's own may be smaller; 0 for others
   double interface_unknowns = 0;  // expected size of the interface: rows, or six a body
   double interface_flops = 0, interface_entries = 0;
   double interface_blocks = 0;  // of a factor in body space

@@ -19,9 +19,9 @@
 namespace cleave {
 namespace {
 
-class Bisection {
+class CoordinateBisection {
  public:
-  explicit Bisection(const BodyGraph& graph) : graph_(graph), label_of_body_(graph.body_count()) {}
+  explicit CoordinateBisection(const BodyGraph& graph) : graph_(graph), label_of_body_(graph.body_count()) {}
 
   Partition run(int parts) {
     std::vector<int> bodies(graph_.body_count());
@@ -73,7 +73,7 @@ class Geometric final : public Partitioner {
     if (parts <= 1) return {std::vector<int>(graph.body_count(), 0), parts};
     if (!graph.has_positions())
       throw CannotSplit("geometric: the positions of the bodies are not known, which it splits by");
-    return Bisection(graph).run(parts);
+    return CoordinateBisection(graph).run(parts);
   }
 
   int max_bodies_;

@@ -25,6 +25,11 @@ struct Growth {
   int open_bodies = 0;  // bodies of the open part
 
   bool is_left(int body) const { return partition.part_of_body[body] < 0; }
+  // The lowest body of G0 from this one on; there must be one.
+  int lowest_left(int body) const {
+    while (!is_left(body)) ++body;
+    return body;
+  }
   int open_part() const { return partition.part_count - 1; }
 };
 

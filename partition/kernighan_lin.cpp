@@ -3,7 +3,7 @@
 // A swap exchanges i of part A, adjacent to B, with j of part B, adjacent to A; i and j need not be adjacent.
 // Its gain is
 //
-//     D_i(B) + D_j(A) - 2 c_ij,     D_i(B) = E_i - I_i.
+//     D_i(B) + D_j(A) - 2 w_ij,     D_i(B) = E_i - I_i.
 //
 // Over all adjacent pairs of parts the swap of greatest gain is made, ties to the lowest min(i, j), then to
 // the lowest max(i, j); gains are recomputed after each swap; it ends when none is positive. Sizes of parts

@@ -22,7 +22,7 @@ class MassRatioChooser final : public Chooser {
   int seed(const Growth& growth) override {
     fitting_.clear();
     too_light_.clear();
-    while (!growth.is_left(lowest_left_)) ++lowest_left_;
+    lowest_left_ = growth.lowest_left(lowest_left_);
     least_kg_ = growth.graph.mass_kg(lowest_left_);
     return lowest_left_;
   }

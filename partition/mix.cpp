@@ -43,7 +43,7 @@ class MixChooser final : public DegreeChooser {
     heaviest_.clear();
     weighing_ = false;
     if (by_degree_ > 0) return DegreeChooser::seed(growth);
-    while (!growth.is_left(lowest_left_)) ++lowest_left_;  // nothing has weight into an empty part
+    lowest_left_ = growth.lowest_left(lowest_left_);  // nothing has weight into an empty part
     return lowest_left_;
   }
 

@@ -15,7 +15,7 @@ namespace cleave {
 namespace {
 
 // Measured on recorded and synthetic piles: more saves little and makes larger children (README.md).
-constexpr double kMostJoined = 1.2;
+constexpr double kJoinedGrowth = 0.2;
 
 // A node of the tree as it is made: parents before children.
 struct Node {
@@ -135,7 +135,7 @@ SetSplitter::SetSplitter(const Algorithm& partitioner, const Algorithm& refiner,
 Partition SetSplitter::grow(const BodyGraph& set, int most_bodies) const {
   Partition parts = make_partitioner(with_max_bodies(partitioner_, most_bodies))->run(set);
   const int most_joined =
-      most_bodies <= max_bodies_ ? max_bodies_ : static_cast<int>(kMostJoined * most_bodies);
+      most_bodies <= max_bodies_ ? max_bodies_ : most_grown_bodies(most_bodies, kJoinedGrowth);
   join_leftovers(set, {arity_, most_bodies / 2 + most_bodies % 2, most_joined}, parts);
   return parts;
 }

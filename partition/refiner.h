@@ -1,7 +1,6 @@
 // A refiner exchanges bodies between parts to lower the total cut weight (Liu & Andrews 2022, section 3.2).
 //
-// For body i in part A and target part B: E_i = edge weight from i into B, I_i = from i into the rest of A,
-// c_ij = weight of the edge (i, j) or 0. A gain is exactly the decrease of the total cut weight.
+// E_i(B), I_i and w_ij are those of gains.h; a gain is exactly the decrease of the total cut weight.
 // Ties: kl takes the lowest min(i, j), then the lowest max(i, j); fm the lowest body, then the lowest target
 // part id. "none" is an ordinary refiner. To add one: a new file, its make_...() and a row in registry.cpp.
 #pragma once

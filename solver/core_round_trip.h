@@ -7,9 +7,9 @@
 
 namespace cleave {
 
-// Nanoseconds that a number takes from one thread of the team of this many to another and back, the least of a few
-// batches, in some 0.1 ms. NaN on one thread, and where two threads have not met and done their trips within the patience:
-// a solve does not wait for a core that others keep busy.
+// Time in ns of a number from one thread of the team of so many threads to another and back: the least of a few batches, which
+// take about 0.1 ms. NaN on one thread, and where two threads have not met and done their trips within the patience: a solve
+// does not wait for a core that others keep busy.
 double core_round_trip_ns(int threads, std::chrono::nanoseconds patience = std::chrono::microseconds(500));
 
 }  // namespace cleave

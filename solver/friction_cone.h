@@ -1,5 +1,5 @@
 // Which rows a friction cone has and what it is: the set of one contact, in the terms of the rows. What is done with it,
-// and its definition, is in cone.h, which only those include who do it (vectors of three take the compiler long).
+// and its definition, is in cone.h: to be included only where it is done, as Eigen's vectors take the compiler long.
 #pragma once
 
 namespace cleave {

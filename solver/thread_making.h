@@ -14,8 +14,8 @@ void check_threads(int count);
 // loads it the first time it needs it and ends the program where it cannot: so it is made to need it now.
 void load_unwinder();
 
-// Threads made meanwhile, and those that they make, leave signals that ask the program to stop to the others: somebody
-// who holds such a signal back in his own thread (METIS needs that) would else find it taken here.
+// While it lives, new threads, and those that they make, start with SIGINT and SIGTERM blocked. A caller that blocks these in its
+// own thread, as METIS needs, would otherwise have them delivered to one of the new ones.
 class SignalsHeldBack {
  public:
   SignalsHeldBack() {

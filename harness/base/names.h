@@ -23,17 +23,11 @@ std::string nearest_question(std::string_view word, std::span<const std::string>
 // "'mindq' is unknown (did you mean 'mindp'?); choices: mindp, maxdp, ..."; no question when nothing is near.
 std::string unknown_name_text(std::string_view word, std::span<const std::string> choices);
 
-// The names of a registry table: rows with a member `name`, or with one `entry` that has it.
+// The names of a registry table: rows with a member `name`.
 template <class Row, std::size_t N>
 std::vector<std::string> names_of(std::span<Row, N> table) {
   std::vector<std::string> names;
-  for (const auto& row : table) {
-    if constexpr (requires { row.entry.name; }) {
-      names.emplace_back(row.entry.name);
-    } else {
-      names.emplace_back(row.name);
-    }
-  }
+  for (const auto& row : table) names.emplace_back(row.name);
   return names;
 }
 

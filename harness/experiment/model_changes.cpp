@@ -10,7 +10,7 @@
 namespace cleave {
 namespace {
 
-// Body `from` of a row becomes static: the other one stands first.
+// The body on this side of the row becomes static: the other one stands first.
 void fix_side(StepProblem& problem, int row, int side) {
   if (side == 0) {
     std::swap(problem.row_body[2 * std::size_t(row)], problem.row_body[2 * std::size_t(row) + 1]);
@@ -26,10 +26,11 @@ void fix_side(StepProblem& problem, int row, int side) {
 StepProblem without_rows(const StepProblem& problem, std::vector<char> gone) {
   for (int row = 0; row < problem.row_count(); ++row)
     if (const int normal = problem.friction_row[row]; normal >= 0 && gone[normal] != 0) gone[row] = 1;
-  for (char& row : gone) row = row == 0;
+  std::vector<char> is_kept;
+  for (const char is_gone : gone) is_kept.push_back(is_gone == 0);
   StepProblem reduced;
   std::vector<int> new_row;
-  copy_rows(problem, gone, reduced, new_row);
+  copy_rows(problem, is_kept, reduced, new_row);
   return reduced;
 }
 

@@ -6,13 +6,14 @@
 #include <utility>
 
 #include "solver/residual.h"
+#include "solver/step_solver.h"
 
 namespace cleave {
 
 double rest_limit_m_per_s(const StepProblem& problem) {
   double largest = 1;
   for (const double velocity : problem.free_velocity) largest = std::max(largest, std::abs(velocity));
-  return 1e-11 * largest;
+  return SolveOptions{}.target_m_per_s * largest;
 }
 
 int RestIslands::root_of(int body) {

@@ -8,7 +8,7 @@
 
 namespace cleave {
 
-// The residual that an island at rest may have: 1e-11 max(1, largest |entry| of v0), m/s, what solvers aim at.
+// The residual that an island at rest may have: what solvers aim at (SolveOptions) times max(1, largest |entry| of v0), m/s.
 double rest_limit_m_per_s(const StepProblem& problem);
 
 // Keeps its scratch from one problem to the next.

@@ -170,7 +170,7 @@ MachineInfo machine_info() {
   info.load_average = load_average();
   info.omp_threads = omp_get_max_threads();
   info.omp_environment = omp_environment();
-  info.dense_kernel = dense_kernel();
+  info.dense_kernel = dense_instruction_set();
   info.dense_gflop_per_s = dense_gflop_per_s();
   info.dispatch = dispatch_cost();
   return info;

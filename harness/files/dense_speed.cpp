@@ -22,7 +22,7 @@ void fill(DenseCholesky& cholesky) {
 
 }  // namespace
 
-std::string dense_kernel() { return dense_tiles().name; }
+std::string dense_instruction_set() { return dense_tiles().name; }
 
 double dense_gflop_per_s() {
   StageClock clock;

@@ -6,7 +6,7 @@
 
 namespace cleave {
 
-std::string dense_kernel();  // the instruction set of its tiles: AVX2 or AVX-512
+std::string dense_instruction_set();  // the instruction set of its tiles: AVX2 or AVX-512
 
 // Cholesky factorisation of 512 rows by one thread, best of three; takes about 10 ms.
 double dense_gflop_per_s();

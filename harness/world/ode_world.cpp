@@ -185,6 +185,5 @@ double OdeWorld::kinetic_energy_j() const {
 int OdeWorld::take_message_count(std::string* first_text) { return take_ode_messages(first_text); }
 
 int OdeWorld::body_index(dBodyID body) const { return index_of(body); }
-int OdeWorld::geom_index(dGeomID geom) const { return index_of(geom); }
 
 }  // namespace cleave

@@ -76,7 +76,6 @@ class OdeWorld {
   dWorldID world() const { return world_.get(); }
   int body_count() const { return static_cast<int>(content_.bodies.size()); }
   int body_index(dBodyID body) const;  // -1 for none (static)
-  int geom_index(dGeomID geom) const;
 
  private:
   // What the scene was built from.

@@ -16,11 +16,10 @@
 // exact where the rows of a contact have one compliance.
 //
 // Under Coulomb's law w_n + mu |w_t| takes the place of w_n, with the change of mu |w_t| along the step (step_shift.h). Its steps
-// are halved until the energy sum_r d_r F_r^2 falls (of a contact its largest F). So it ends most steps of piles that are not stiff from the impulses of the
-// step before, and the others from where the interior point stalls.
+// are halved until the energy sum_r d_r F_r^2 falls (of a contact its largest F). On piles that are not stiff it mostly converges
+// from the impulses of the step before, on others from where the interior point stalls.
 //
-// Source: Qi and Sun, "A nonsmooth version of Newton's method", Math.
-// Program. 58, 1993; the derivative: Fukushima, Luo and Tseng, "Smoothing functions for second-order-cone complementarity
+// Source: Qi and Sun, "A nonsmooth version of Newton's method", Math. Program. 58, 1993; the derivative: Fukushima, Luo and Tseng, "Smoothing functions for second-order-cone complementarity
 // problems", SIAM J. Optim. 12, 2002.
 #pragma once
 
