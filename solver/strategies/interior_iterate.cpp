@@ -27,14 +27,14 @@ void InteriorIterate::choose_impulses(SolveState& state) {
 
 // Every row starts with the same product s z, an energy: at a speed of sqrt(energy d), where light bodies
 // have a large d and heavy ones a small one. The same speed everywhere would let the heavy rule the target.
-void InteriorIterate::start_rows(SolveState& state) {
+void InteriorIterate::start_rows(SolveState& state, double inside) {
   const int m = state.step->row_count();
   double energy = 0, fastest = 0;
   for (int r = 0; r < m; ++r) {
     energy += state.slack[r] * state.slack[r] / state.step->diagonal()[r];
     fastest = std::max(fastest, std::abs(state.slack[r]));
   }
-  energy *= constants_.start_energy / std::max(m, 1);
+  energy *= inside * constants_.start_energy / std::max(m, 1);
   row_speed_.resize(m);
   for (int r = 0; r < m; ++r) {
     const double speed =
@@ -47,15 +47,16 @@ void InteriorIterate::start_rows(SolveState& state) {
 }
 
 // Beside the kernel's analysis, if that is still to be done: it needs none of the rows' values.
-void InteriorIterate::start(SolveState& state) {
+void InteriorIterate::start(SolveState& state, double inside) {
   is_to_be_kept_ = false;
   row_error_.resize(state.slack.size());
   choose_impulses(state);
   state.update_shift();
   if (state.analysis) {
-    state.tasks.run(Stage::analyze, 2, [&](int task) { task == 0 ? state.analyze() : start_rows(state); });
+    state.tasks.run(Stage::analyze, 2,
+                    [&](int task) { task == 0 ? state.analyze() : start_rows(state, inside); });
   } else {
-    start_rows(state);
+    start_rows(state, inside);
   }
   update_velocity(state);
   measure(state);

@@ -31,8 +31,8 @@ class InteriorIterate {
 
   explicit InteriorIterate(const InteriorConstants& constants) : constants_(constants), barrier_(constants) {}
 
-  // Impulses moved inside their bounds, slacks and multipliers to them.
-  void start(SolveState& state);
+  // Impulses moved inside their bounds, slacks and multipliers to them. inside: factor of the products s z that they start with.
+  void start(SolveState& state, double inside = 1);
 
   // Factors the Newton system; false when the kernel finds a non-positive pivot.
   bool factor(SolveState& state, double delta);
@@ -74,7 +74,7 @@ class InteriorIterate {
 
  private:
   void choose_impulses(SolveState& state);
-  void start_rows(SolveState& state);
+  void start_rows(SolveState& state, double inside);
   void choose_target(Aim aim);
   void add_cones_to_right_hand_side(SolveState& state) const;
   void solve(SolveState& state, const RowWork& set_force);  // which sets the part of the bounds in state.f_r

@@ -7,6 +7,9 @@
 // Once the error is small an exact solve ends the iteration (interior_end.h). Where that finds no answer yet, the iteration goes
 // on, and where rounding keeps it from ever finding one, the best interior iterate is the answer if it is within the limit.
 //
+// Cones of very different masses, or of a large mu, may stop the first steps short and leave products that no direction brings back
+// to the centre. Such an iteration begins anew, further inside and with shorter steps.
+//
 // Under Coulomb's law every direction is that of the law (coulomb_shift.h). The problem is then not convex, and the iteration may
 // stall where the exact solve does not: that is tried before the first iteration, from the impulses of the step before, and
 // again where iterations make no progress. Where all of it fails, status and residual say so.
@@ -36,6 +39,14 @@ constexpr double kNextStalledPolish = 0.5;
 // most ten.
 constexpr int kHopelessIterations = 20;
 
+// With cones: so many steps in a row below this length, and the iteration begins anew with products of so many times the energy and
+// with this share of the way to the boundary. Two to four boxes with masses in ratios of 1e5 and 1e6 that spin are solved in some 30
+// iterations then and were not in 100. Of 240 random problems (mu up to 1000, compliances down to 0) 191 are solved and were 177, all
+// of those among them; after 5 short steps two of these were lost, 12 take more factorisations.
+constexpr int kMostShortSteps = 8;
+constexpr double kShortStep = 0.05;
+constexpr double kFurtherInside = 3e4, kCarefulFraction = 0.9;
+
 class InteriorPoint : public Strategy {
  public:
   explicit InteriorPoint(const InteriorConstants& constants)
@@ -46,6 +57,10 @@ class InteriorPoint : public Strategy {
  private:
   enum class Progress { good, finished, rounding };
   void begin(SolveState& state);
+  bool search(SolveState& state);
+  bool search_from_further_inside(SolveState& state);
+  bool is_lost() const { return has_convex_cones_ && !is_careful_ && short_steps_ >= kMostShortSteps; }
+  double step_fraction() const { return is_careful_ ? kCarefulFraction : constants_.step_fraction; }
   Progress watch(const SolveState& state, double error);
   bool is_stalled() const;
   bool is_hopeless() const { return has_coulomb_ && since_best_ >= kHopelessIterations; }
@@ -62,7 +77,11 @@ class InteriorPoint : public Strategy {
   double best_error_ = 0, last_step_ = 1, polish_below_ = 0;
   int since_best_ = 0, grown_ = 0, raises_ = 0;
   double delta_ = 0, least_delta_ = 0, best_delta_ = 0;
-  bool has_coulomb_ = false;
+  bool has_coulomb_ = false, has_convex_cones_ = false;
+  bool is_careful_ = false;  // the iteration has begun anew
+  int iterations_left_ = 0, short_steps_ = 0;
+  std::vector<double> warm_impulse_,
+      best_impulse_;  // with convex cones: of the start, and of the first iteration
   bool is_start_ = true, best_is_start_ = false;  // of cones, whose error is that of the impulses alone
   bool rounds_ = false;                           // there are rows that delta may matter to
 };
@@ -73,7 +92,7 @@ class InteriorPoint : public Strategy {
 bool InteriorPoint::is_poor() const {
   const double step = iterate_.largest_step();
   return step < constants_.short_step ||
-         iterate_.mean_product(constants_.step_fraction * step) > iterate_.mean_product(0);
+         iterate_.mean_product(step_fraction() * step) > iterate_.mean_product(0);
 }
 
 // The compliance delta that is factored follows the rounding of the directions, in units of the error they
@@ -100,7 +119,8 @@ void InteriorPoint::step(SolveState& state, double error) {
   if (has_coulomb_) iterate_.match_shift(state, kShiftAccuracy * error, kMostShifts);
   iterate_.correct_centrality(state);
   if (rounds_) adapt_delta(iterate_.rounding(state) / error);
-  last_step_ = std::min(1.0, constants_.step_fraction * iterate_.largest_step());
+  last_step_ = std::min(1.0, step_fraction() * iterate_.largest_step());
+  short_steps_ = last_step_ < kShortStep ? short_steps_ + 1 : 0;
   iterate_.advance(state, last_step_);
 }
 
@@ -129,6 +149,7 @@ InteriorPoint::Progress InteriorPoint::watch(const SolveState& state, double err
 void InteriorPoint::begin(SolveState& state) {
   const double least = state.step->least_relative_compliance();
   has_coulomb_ = state.step->set().has_coulomb();
+  has_convex_cones_ = !has_coulomb_ && !state.step->set().cones().empty();
   end_.begin(state);
   polish_below_ = end_.first_error(state) * state.step->velocity_scale();
   delta_ = constants_.first_delta;
@@ -136,7 +157,7 @@ void InteriorPoint::begin(SolveState& state) {
   least_delta_ = constants_.least_delta;
   rounds_ = least < constants_.most_delta;
   best_error_ = std::numeric_limits<double>::infinity();
-  since_best_ = grown_ = raises_ = 0;
+  since_best_ = grown_ = raises_ = short_steps_ = 0;
   is_start_ = true;
   last_polish_ = std::numeric_limits<double>::infinity();
 }
@@ -148,11 +169,32 @@ bool InteriorPoint::is_stalled() const {
 }
 
 bool InteriorPoint::run(SolveState& state) {
+  is_careful_ = false;
+  iterations_left_ = state.options.max_iterations;
   begin(state);
+  if (has_convex_cones_) warm_impulse_ = state.impulse;
   if (has_coulomb_ && end_.attempt(state, iterate_)) return true;
   iterate_.start(state);
+  return search(state) || finish(state) || (has_convex_cones_ && search_from_further_inside(state));
+}
+
+// Where it finds no answer either, the better impulses of the two stay.
+bool InteriorPoint::search_from_further_inside(SolveState& state) {
+  const double residual = state.residual();
+  best_impulse_ = state.impulse;
+  state.load(warm_impulse_);
+  is_careful_ = true;
+  begin(state);
+  iterate_.start(state, kFurtherInside);
+  if (search(state) || finish(state)) return true;
+  if (residual < state.residual()) state.load(best_impulse_);
+  return false;
+}
+
+// True where an attempt at the end has found the answer.
+bool InteriorPoint::search(SolveState& state) {
   const double target = state.options.target_m_per_s * state.step->velocity_scale();
-  for (int k = 0; k < state.options.max_iterations; ++k) {
+  for (; iterations_left_ > 0 && !is_lost(); --iterations_left_) {
     double error = iterate_.error();
     const Progress progress = watch(state, error);
     if (progress == Progress::finished || is_hopeless()) break;
@@ -178,7 +220,7 @@ bool InteriorPoint::run(SolveState& state) {
       break;
     }
   }
-  return finish(state);
+  return false;
 }
 
 bool InteriorPoint::finish(SolveState& state) {

@@ -187,6 +187,22 @@ TEST_P(ConeSolverTest, ConesAreExactAtEveryCompliance) {
   EXPECT_GT(surface, 100);
 }
 
+// One box on another of a hundred-thousandth of its mass, both spinning: the first steps of the iteration stop short.
+TEST_P(ConeSolverTest, ConesUnderAHeavyBodyThatSpinsAreExact) {
+  constexpr double kRatio = 1e5;
+  for (const double cfm : {1e-6, 1e-7, 1e-8, 0.0}) {
+    SCOPED_TRACE("cfm " + std::to_string(cfm));
+    StepProblem pile = make_pile(1, {.columns = 1, .rows = 1, .layers = 2, .cfm = cfm});
+    ASSERT_EQ(pile.body_count(), 2);
+    for (std::size_t k = 36; k < 72; ++k) pile.mass[k] *= kRatio;
+    pile.free_velocity = {0, 0, -0.16, 0, 0, 1, 0.3, 0, -0.16, 0, 0, 1};
+    const StepProblem problem = with_sets(std::move(pile), ContactSet::cone);
+    const std::vector<int> part_of_body(2, 0);
+    const Answer answer = solve("interior-point:" + GetParam(), problem, part_of_body);
+    EXPECT_TRUE(is_exact(problem, answer.summary, answer.solution));
+  }
+}
+
 TEST_P(ConeSolverTest, CoulombsLawIsExactOnCompliantPiles) {
   for (const double cfm : {1e-3, 1e-4, 1e-5}) {
     for (int seed = 0; seed < 2; ++seed) {
