@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <exception>
 #include <fstream>
+#include <map>
 #include <set>
 #include <stdexcept>
 
 #include "harness/base/csv_text.h"
 #include "harness/commands/verify_table.h"
+#include "harness/experiment/earlier_tables.h"
 #include "harness/experiment/step_record.h"
+#include "harness/files/checksums.h"
 #include "harness/files/manifest.h"
 
 namespace cleave {
@@ -29,6 +32,22 @@ std::vector<fs::path> cells_below(const fs::path& root) {
     if (entry.is_directory() && !entry.is_symlink() && is_cell(entry.path())) found.push_back(entry.path());
   std::ranges::sort(found);
   return found;
+}
+
+[[noreturn]] void refuse_columns(const std::string& place) {
+  throw std::invalid_argument(place + ": its columns are not those of " + kStepsSchema +
+                              "; was it written by another version?");
+}
+
+// Of a run that has ended and was changed since. One that goes on, or was killed, has no checksums.
+void check_sum(const fs::path& directory) {
+  if (!fs::exists(directory / kChecksumsFile)) return;
+  const std::map<std::string, std::string> sums = read_checksums(directory);
+  const auto sum = sums.find(kStepsFile);
+  if (sum != sums.end() && sum->second != sha256_of(directory / kStepsFile))
+    throw std::invalid_argument((directory / kStepsFile).string() + ": is not what the run wrote, by " +
+                                (directory / kChecksumsFile).string() + "; 'cleave verify " +
+                                directory.string() + "' says more");
 }
 
 struct ReadManifest {
@@ -82,18 +101,24 @@ void visit_cells(std::span<const MeasuredCell> cells,
 }
 
 bool visit_rows(const MeasuredCell& cell, const std::function<void(const MeasuredRow& row)>& visit) {
-  static const std::string header = csv_header();
   const fs::path path = cell.directory / kStepsFile;
+  check_sum(cell.directory);
   std::ifstream file(path, std::ios::binary);
   std::string line;
-  if (!std::getline(file, line) || line + "\n" != header)
-    throw std::invalid_argument(path.string() + ": its columns are not those of " + kStepsSchema +
-                                "; was it written by another version?");
-  const std::size_t columns = split_csv_line(line).size();
+  std::getline(file, line);
+  const std::vector<std::string> header = split_csv_line(line);
+  if (!are_columns_of_schema(header)) refuse_columns(path.string());
+  const std::vector<std::string> later = cells_of_later_columns(header.size());
+  const auto schema = std::ranges::find(header, "schema_version") - header.begin();
   for (std::size_t row = 0; std::getline(file, line); ++row) {
     if (file.eof()) return false;
-    const MeasuredRow found = {line, split_csv_line(line), path.string() + ": " + StepsTable::line_of(row)};
-    check_cell_count(found.place, found.cells.size(), columns);
+    MeasuredRow found = {line, split_csv_line(line), path.string() + ": " + StepsTable::line_of(row)};
+    check_cell_count(found.place, found.cells.size(), header.size());
+    if (found.cells[schema] != kStepsSchema) refuse_columns(found.place);
+    for (const std::string& text : later) {
+      found.line += "," + text;
+      found.cells.push_back(text);
+    }
     visit(found);
   }
   return true;

@@ -33,8 +33,9 @@ struct MeasuredRow {
 };
 
 // Calls visit for every row of the cell's steps.csv. Whatever the run did not come to write whole is left out: returns false
-// then. Throws std::invalid_argument naming the file where its columns are not those that this program writes, and the
-// line where it has another number of cells.
+// then. A table of the same schema that lacks the last columns gets them, as nobody measured them. Throws std::invalid_argument
+// naming the file where its columns are those of another schema, or its bytes not those of the checksums beside it, and the line
+// where it has another number of cells.
 bool visit_rows(const MeasuredCell& cell, const std::function<void(const MeasuredRow& row)>& visit);
 
 }  // namespace cleave

@@ -13,6 +13,7 @@
 #include "harness/commands/verify_row_groups.h"
 #include "harness/commands/verify_row_sums.h"
 #include "harness/commands/verify_table.h"
+#include "harness/experiment/earlier_tables.h"
 #include "harness/experiment/step_record.h"
 #include "harness/files/manifest.h"
 #include "solver/step_problem.h"
@@ -46,7 +47,7 @@ std::optional<StepsTable> check_header(const fs::path& path, const StoredManifes
   try {
     table.emplace(path);
     error = first_difference(table->header(), manifest.columns);
-    if (error.empty() && manifest.steps_schema == kStepsSchema)
+    if (error.empty() && manifest.steps_schema == kStepsSchema && !are_columns_of_schema(table->header()))
       error = first_difference(table->header(), header_of_program());
   } catch (const std::invalid_argument& wrong) {
     error = std::string("; ") + wrong.what();
@@ -177,12 +178,13 @@ std::optional<ExpectedRows> check_options(const fs::path& directory, const Store
 void check_steps_table(const fs::path& directory, const StoredManifest& manifest, CheckList& list) {
   const fs::path path = directory / "steps.csv";
   const std::string subject = path.string();
-  const std::optional<StepsTable> table = check_header(path, manifest, list);
+  std::optional<StepsTable> table = check_header(path, manifest, list);
   if (!table) return;
-  if (table->header() != header_of_program()) {
+  if (manifest.steps_schema != kStepsSchema || !are_columns_of_schema(table->header())) {
     check_limits(*table, subject, list);
     return CheckList::note(subject, "has the columns of another schema; no more of its rows was checked");
   }
+  table->add_later_columns();
   if (!check_cells(*table, subject, list)) return;
   check_limits(*table, subject, list);
   check_rows_alone(*table, subject, list);

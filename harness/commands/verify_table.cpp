@@ -6,6 +6,7 @@
 
 #include "harness/base/csv_text.h"
 #include "harness/base/numbers.h"
+#include "harness/experiment/earlier_tables.h"
 
 namespace cleave {
 
@@ -36,6 +37,16 @@ StepsTable::StepsTable(const std::filesystem::path& path) : file_(path.string())
     check_cell_count(place, rows_.back().size(), header_.size());
     if (file.eof()) throw std::invalid_argument(place + " has no end: the file is truncated");
   }
+}
+
+void StepsTable::add_later_columns() {
+  const std::vector<std::string> later = cells_of_later_columns(header_.size());
+  const std::vector<Column> all = columns();
+  for (std::size_t k = header_.size(); k < all.size(); ++k) {
+    place_.emplace(all[k].name, k);
+    header_.push_back(all[k].name);
+  }
+  for (std::vector<std::string>& row : rows_) row.insert(row.end(), later.begin(), later.end());
 }
 
 const std::string& StepsTable::cell(std::size_t row, const std::string& column) const {

@@ -16,6 +16,9 @@ class StepsTable {
   // another number of cells than the header, a last line without its end.
   explicit StepsTable(const std::filesystem::path& path);
 
+  // Columns of the schema that came after the table was written are added to it, as nobody measured them.
+  void add_later_columns();
+
   const std::vector<std::string>& header() const { return header_; }
   std::size_t row_count() const { return rows_.size(); }
   // Throw std::invalid_argument naming the file and the column when there is none of this name, or the cell that is

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "harness/base/ratio_interval.h"
+#include "harness/files/checksums.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -43,6 +44,8 @@ class Campaigns : public ::testing::Test {
                       "--out", directory_.path() / "a" / ("cell" + std::string(seed))})
               .exit_code,
           0);
+    for (const char* cell : {"cell1", "cell2"})
+      fs::remove(directory_ / "a" / cell / kChecksumsFile);  // rows are changed
     fs::copy(directory_ / "a", directory_ / "b", fs::copy_options::recursive);
     // Times that a test can tell: 10, 11, ... ms.
     for (const char* campaign : {"a", "b"})
@@ -124,6 +127,44 @@ TEST_F(Campaigns, OfOtherColumnsAreRefusedByName) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_NE(result.err.find("cell2/steps.csv: its columns are not those of"), std::string::npos)
       << result.err;
+  EXPECT_FALSE(fs::exists(directory_ / "all.csv"));
+}
+
+// A table of the same schema from before the last columns came.
+TEST_F(Campaigns, WithoutTheLastColumnsAreTakenWithoutTheirValues) {
+  const fs::path path = steps("a", "cell2");
+  const std::size_t columns = read_csv(path).header.size();
+  edit_rows(path, [](CsvTable& table) {
+    table.header.pop_back();
+    for (std::vector<std::string>& row : table.rows) row.pop_back();
+  });
+  const ProgramResult result = run_cleave({"collect", directory_ / "a", "--out", directory_ / "all.csv"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const CsvTable table = read_csv(directory_ / "all.csv");
+  ASSERT_EQ(table.header.size(), columns + 2);
+  EXPECT_EQ(table.at(23, "core_round_trip_ns"), "nan");
+  EXPECT_EQ(compare().exit_code, 0);
+  edit_rows(path, [](CsvTable& table) {
+    set_column(table, "schema_version", [](int) { return "cleave-steps-4"; });
+  });
+  const ProgramResult refused = compare();
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("cell2/steps.csv: line 2: its columns are not those of"), std::string::npos)
+      << refused.err;
+}
+
+TEST_F(Campaigns, ChangedAfterTheRunAreRefused) {
+  for (const char* cell : {"cell1", "cell2"})
+    write_checksums(directory_ / "b" / cell, {"manifest.json", "steps.csv"});
+  ASSERT_EQ(compare().exit_code, 0);
+  edit_rows(steps("b", "cell2"),
+            [](CsvTable& table) { set_column(table, "t_s_ms", [](int) { return "-5"; }); });
+  const ProgramResult compared = compare();
+  EXPECT_EQ(compared.exit_code, 1);
+  EXPECT_NE(compared.err.find("cell2/steps.csv: is not what the run wrote"), std::string::npos)
+      << compared.err;
+  EXPECT_EQ(compared.out, "");
+  EXPECT_EQ(run_cleave({"collect", directory_ / "b", "--out", directory_ / "all.csv"}).exit_code, 1);
   EXPECT_FALSE(fs::exists(directory_ / "all.csv"));
 }
 

@@ -101,6 +101,17 @@ class CampaignsTest(unittest.TestCase):
         self.assertEqual(sum(cell["repeats"] == "3" for cell in found), 12)
         self.assertEqual(sum(cell["solver"] == "schur" for cell in found), 16)
 
+    def test_the_example_of_the_documents_is_a_campaign(self):
+        text = (SCRIPTS.parent / "harness" / "README.md").read_text().partition("\n## Campaigns\n")[2]
+        example = text.partition("\n    ")[2].partition("\n\n")[0]
+        with tempfile.TemporaryDirectory() as directory:
+            spec = pathlib.Path(directory) / "example.toml"
+            spec.write_text(example)
+            printed = sweep(spec, "--dry-run", "--out", pathlib.Path(directory) / "out")
+        self.assertEqual(printed.returncode, 0, printed.stderr)
+        # Three sizes at four compliances less two, and the one that is included, three times over.
+        self.assertEqual(len(list(csv.DictReader(io.StringIO(printed.stdout)))), 3 * (3 * 4 - 2 + 1))
+
     def test_smoke_runs_and_its_results_verify(self):
         with tempfile.TemporaryDirectory() as scratch:
             out = pathlib.Path(scratch) / "smoke"

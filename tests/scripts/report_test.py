@@ -337,6 +337,18 @@ class DamageTest(TreeTest):
         self.assert_has(page, "no data: Rock Pile, ")  # Table 1 averages no scene with such a value
         self.assertTrue((self.directory / "figures" / "figure3.png").exists())
 
+    def test_words_of_a_parameter_that_some_rows_do_not_have_are_no_damage(self):
+        rows = rows_of("rock_pile")
+        for row in rows:
+            row["degree"] = "bodies" if row["partitioner"] == "mix" else "-"
+        rows[0]["max_bodies"] = "many"  # among numbers it is
+        write_run(self.directory / "rock_pile", rows)
+        loaded = data.load(self.directory, "schur")
+        self.assertEqual(set(loaded.tree.experiments[0].rows["degree"]), {"bodies", "-"})
+        self.assertEqual([text for text in loaded.messages if "expected a number" in text],
+                         [text for text in loaded.messages if "column max_bodies is 'many'" in text])
+        self.assertIn("max_bodies", " ".join(loaded.messages))
+
     def test_steps_before_skip_are_left_out(self):
         write_run(self.directory / "rock_pile", rows_of("rock_pile"), skip=20)
         loaded = data.load(self.directory, "schur")

@@ -129,9 +129,10 @@ def to_frame(rows, path, messages):
     frame = pandas.DataFrame(rows)
     for column in frame.columns.difference(TEXT_COLUMNS):
         values = pandas.to_numeric(frame[column], errors="coerce")
-        wrong = values.isna() & ~frame[column].str.lower().isin(NOT_MEASURED)
-        if wrong.all() and not column.startswith(NUMBERS):
-            continue  # a column of names that came later
+        missing = frame[column].str.lower().isin(NOT_MEASURED)
+        wrong = values.isna() & ~missing
+        if wrong.any() and (wrong | missing).all() and not column.startswith(NUMBERS):
+            continue  # a parameter whose values are words, which some rows do not have
         if wrong.any():
             first = rows[wrong.idxmax()]
             messages.append(
