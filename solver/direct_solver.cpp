@@ -17,16 +17,19 @@
 namespace cleave {
 namespace {
 
-// Where the limit cannot be met by any impulses in double precision, a text that says so: their last digit is
-// a velocity above it. Bodies wedged between others that cannot give way need such impulses.
-// impulse: along the axes of the set.
-std::string rounding_note(const PreparedStep& step, std::span<const double> impulse) {
+// What is left may be the rounding of the impulses where it is no more than so many of their last digits.
+constexpr double kMostRoundings = 4;
+
+// Where the last digit of the impulses found is a velocity above the limit, and what is left is about that, a text that says so.
+// Bodies wedged between others that cannot give way need such impulses; no impulses in double precision may then be within
+// the limit. impulse: along the axes of the set.
+std::string rounding_note(const PreparedStep& step, std::span<const double> impulse, double residual) {
   double largest = 0;
   for (int r = 0; r < step.row_count(); ++r) {
     largest = std::max(largest, step.diagonal()[r] * std::abs(impulse[r]));
   }
   const double rounding = std::numeric_limits<double>::epsilon() * largest;
-  if (!(rounding > step.exact_limit_m_per_s())) return "";
+  if (!(rounding > step.exact_limit_m_per_s()) || residual > kMostRoundings * rounding) return "";
   std::ostringstream text;
   text << ", which is below the rounding of its impulses, " << rounding << " m/s";
   return text.str();
@@ -61,7 +64,7 @@ class DirectSolver : public StepSolver {
   void plan_analysis(const Parts& parts);
   bool run_attempts(SolveSummary& summary);
   void hand_over(Solution& solution);
-  void describe_failure(const Solution& solution, SolveSummary& summary) const;
+  void describe_failure(const Solution& solution, SolveSummary& summary);
   void count_work(SolveSummary& summary) const;
 
   std::string strategy_, kernel_name_;
@@ -146,12 +149,12 @@ void DirectSolver::hand_over(Solution& solution) {
   step_.velocity(solution.impulse, solution.velocity);
 }
 
-void DirectSolver::describe_failure(const Solution& solution, SolveSummary& summary) const {
+void DirectSolver::describe_failure(const Solution& solution, SolveSummary& summary) {
   const bool is_finite = std::ranges::all_of(solution.velocity, [](double v) { return std::isfinite(v); });
   summary.status = SolveStatus::not_converged;
   if (!is_finite) summary.status = SolveStatus::diverged;
-  summary.message =
-      "strategy " + summary.strategy + " stopped above the limit" + rounding_note(step_, state_.impulse);
+  summary.message = "strategy " + summary.strategy + " stopped above the limit" +
+                    rounding_note(step_, state_.impulse, state_.residual());
 }
 
 void DirectSolver::count_work(SolveSummary& summary) const {

@@ -65,13 +65,18 @@ double parse_number(const std::string& option, const std::string& text, const Ra
 }
 
 int parse_integer(const std::string& option, const std::string& text, const Range& range) {
+  constexpr int kLeast = std::numeric_limits<int>::min(), kMost = std::numeric_limits<int>::max();
   long long value = 0;
   const std::errc error = read(text, value);
   if (error == std::errc::invalid_argument)
     reject(option, quoted(text), "is not a whole number in " + range.text());
-  const bool fits = value >= std::numeric_limits<int>::min() && value <= std::numeric_limits<int>::max();
-  if (error != std::errc{} || !fits || !range.contains(static_cast<double>(value)))
-    reject(option, text, "is not in " + range.text());
+  if (error != std::errc{} || value < kLeast || value > kMost) {
+    Range of_integers = range;
+    of_integers.min = std::max<double>(range.min, kLeast);
+    of_integers.max = std::min<double>(range.max, kMost);
+    reject(option, text, "is not in " + of_integers.text());
+  }
+  if (!range.contains(static_cast<double>(value))) reject(option, text, "is not in " + range.text());
   return static_cast<int>(value);
 }
 

@@ -40,7 +40,7 @@ IndexRow unsure(const IndexRow& row) {
 
 void check_campaign_directory(const std::string& out) {
   std::error_code none;
-  for (const char* file : {kManifestFile, "steps.csv"})
+  for (const char* file : {kManifestFile, kStepsFile})
     if (fs::exists(fs::path(out) / file, none))
       throw std::invalid_argument(
           "--out: '" + out + "' holds " + file +

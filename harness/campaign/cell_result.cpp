@@ -54,7 +54,7 @@ void take_status(const fs::path& directory, const StoredManifest& manifest, Inde
   }
   row.status = to_string(status);
   if (row.rows_ok == row.rows) return;
-  row.status = first_failure(directory / "steps.csv");
+  row.status = first_failure(directory / kStepsFile);
   row.reason =
       std::to_string(row.rows - row.rows_ok) + " of " + std::to_string(row.rows) + " rows are not ok";
 }
@@ -62,7 +62,7 @@ void take_status(const fs::path& directory, const StoredManifest& manifest, Inde
 // The two files that every run leaves are those that were written.
 bool is_sealed(const fs::path& directory) {
   const auto sums = read_checksums(directory);
-  return std::ranges::all_of(std::array{kManifestFile, "steps.csv"}, [&](const char* file) {
+  return std::ranges::all_of(std::array{kManifestFile, kStepsFile}, [&](const char* file) {
     return sums.contains(file) && sums.at(file) == sha256_of(directory / file);
   });
 }

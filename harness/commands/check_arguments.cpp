@@ -72,6 +72,14 @@ void check_out_file(const std::string& out, bool force) {
     reject("--out: " + out + " cannot be written: there is no directory " + directory.string());
 }
 
+void check_not_read(const std::string& out, std::span<const std::filesystem::path> read) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(out, ignored)) return;
+  for (const std::filesystem::path& source : read)
+    if (std::filesystem::equivalent(out, source, ignored))
+      reject("--out: " + out + " would replace " + source.string() + ", which is read; name another file");
+}
+
 void reject_extras(const CLI::App& app) {
   std::vector<std::string> extras = app.remaining();
   // Before file names.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/App.hpp>
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -15,6 +16,9 @@ void check_arguments(const CLI::App& command, std::span<const std::string> argum
 // --out of a command that writes one file: throws where it is empty, where there is no such directory, and
 // where a file of that name exists and --force is not given.
 void check_out_file(const std::string& out, bool force);
+
+// Throws where the file to write, which may be overwritten, is one of those that are read.
+void check_not_read(const std::string& out, std::span<const std::filesystem::path> read);
 
 // After parsing: throws for what `app` could not place, naming the nearest option.
 void reject_extras(const CLI::App& app);

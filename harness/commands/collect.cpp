@@ -15,6 +15,7 @@
 #include "harness/commands/measured_cells.h"
 #include "harness/experiment/step_record.h"
 #include "harness/files/checksums.h"
+#include "harness/files/manifest.h"
 #include "harness/files/whole_file.h"
 
 namespace cleave {
@@ -115,12 +116,26 @@ void publish(const CollectedTables& files, GrowingFile& rows, const std::string&
   rows.publish();
 }
 
+// Files of the runs, and a campaign's own.
+std::vector<fs::path> files_read(std::span<const std::string> directories,
+                                 std::span<const MeasuredCell> cells) {
+  std::vector<fs::path> files;
+  for (const std::string& directory : directories) files.push_back(fs::path(directory) / "index.csv");
+  for (const MeasuredCell& cell : cells)
+    for (const char* name : {kStepsFile, kManifestFile, kChecksumsFile})
+      files.push_back(cell.directory / name);
+  return files;
+}
+
 int collect(const CollectOptions& options) {
   if (options.directories.empty()) throw std::invalid_argument("DIR: an output directory is required");
   const CollectedTables files(options.out);
   for (const fs::path& path : {files.rows, files.cells, files.columns, files.checksums})
     check_out_file(path, options.force);
   const std::vector<MeasuredCell> cells = find_measured_cells(options.directories);
+  const std::vector<fs::path> read = files_read(options.directories, cells);
+  for (const fs::path& path : {files.rows, files.cells, files.columns, files.checksums})
+    check_not_read(path, read);
   GrowingFile rows(files.rows);
   TableOfCells table;
   const Counts counts = write_rows(cells, rows, table);

@@ -5,7 +5,7 @@
 #include <array>
 #include <filesystem>
 
-#include "harness/commands/verify_checks.h"
+#include "harness/commands/check_list.h"
 
 namespace cleave {
 

@@ -195,6 +195,7 @@ int export_problem(const ExportOptions& options) {
   if (options.files.empty()) throw std::invalid_argument("FILE: a problem file is required");
   const ExportFormat& format = read_format(options);
   check_out_file(options.out, options.force);
+  check_not_read(options.out, std::vector<fs::path>(options.files.begin(), options.files.end()));
   if (check_series(options, format)) {
     write_series(options);
     return kExitOk;

@@ -68,6 +68,7 @@ int import_problem(const ImportOptions& options) {
   check_name("--format", options.format, kFormats);
   if (!options.mass_blocks.empty()) check_name("--mass-blocks", options.mass_blocks, kMassBlocks);
   check_out_file(options.out, options.force);
+  check_not_read(options.out, std::vector<std::filesystem::path>{options.file});
   const ProblemFile file = read_fclib(options);
   write_problem_file(options.out, file);
   say(options.out + ": " + std::to_string(file.problem.body_count()) + " bodies, " +

@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kStepsFile = "steps.csv";
-
 bool is_cell(const fs::path& directory) {
   return fs::is_regular_file(directory / kManifestFile) && fs::is_regular_file(directory / kStepsFile);
 }

@@ -8,6 +8,7 @@
 #include "harness/commands/run_command_line.h"
 #include "harness/commands/simulate.h"
 #include "harness/experiment/options.h"
+#include "harness/files/manifest.h"
 #include "harness/files/problem_file.h"
 #include "harness/world/extract_shapes.h"
 
@@ -53,7 +54,7 @@ RunOptions parse_record_options(const Given& typed) {
 }
 
 std::vector<std::string> files_of(const RunOptions& options) {
-  std::vector<std::string> files = {"steps.csv"};
+  std::vector<std::string> files = {kStepsFile};
   for (const int step : options.at) files.push_back(problem_file_name(options.scene.name, step));
   return files;
 }

@@ -9,6 +9,7 @@
 #include "harness/campaign/cell_process.h"
 #include "harness/commands/command.h"
 #include "harness/commands/verify_table.h"
+#include "harness/experiment/earlier_tables.h"
 #include "harness/files/manifest.h"
 #include "harness/files/manifest_reader.h"
 
@@ -51,7 +52,9 @@ StoredManifest checked_manifest(const fs::path& cell) {
 
 // Row by row, in every column but the machine's.
 void compare_rows(const fs::path& cell, const fs::path& again, const std::string& how, CheckList& list) {
-  const StepsTable before(cell / "steps.csv"), now(again / "steps.csv");
+  StepsTable before(cell / kStepsFile);
+  const StepsTable now(again / kStepsFile);
+  if (are_columns_of_schema(before.header())) before.add_later_columns();
   Findings wrong;
   if (before.row_count() != now.row_count())
     wrong.add("it has " + std::to_string(before.row_count()) + ", again " + std::to_string(now.row_count()));
@@ -63,7 +66,7 @@ void compare_rows(const fs::path& cell, const fs::path& again, const std::string
       if (const std::string& was = before.cell(row, column.name), &is = now.cell(row, column.name); was != is)
         wrong.add(StepsTable::line_of(row) + ": " + column.name + " = '" + was + "', again '" + is + "'");
   }
-  list.add(wrong.none(), (cell / "steps.csv").string(),
+  list.add(wrong.none(), (cell / kStepsFile).string(),
            std::to_string(before.row_count()) + " rows against those of the repeated run" + how + ", in " +
                std::to_string(compared) + " columns" + wrong.text());
 }
@@ -74,6 +77,7 @@ CellCommand command_of(const RepeatedRun& run, const fs::path& out) {
       std::numeric_limits<double>::quiet_NaN(),
       {}};
   if (run.threads) command.words.push_back("--threads=" + std::to_string(*run.threads));
+  if (run.force) command.words.push_back("--force");
   return command;
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "harness/commands/verify_checks.h"
+#include "harness/commands/check_list.h"
 
 namespace cleave {
 
@@ -14,6 +14,7 @@ struct RepeatedRun {
   std::filesystem::path directory;  // of the run that is repeated
   std::filesystem::path out;        // keeps the repeated run; empty: nothing does
   std::optional<int> threads;       // in place of those it had
+  bool force = false;               // overwrite what `out` holds
 };
 
 // Adds one check: row by row, every column but the machine's. Returns false where the repeated run was interrupted; nothing is added then.

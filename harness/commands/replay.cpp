@@ -21,6 +21,7 @@
 #include "harness/experiment/options.h"
 #include "harness/experiment/step_columns.h"
 #include "harness/files/csv_recorder.h"
+#include "harness/files/manifest.h"
 #include "harness/files/output_directory.h"
 #include "harness/files/problem_file.h"
 #include "solver/parallel_tasks.h"
@@ -120,7 +121,7 @@ void check_not_taken_away(const ReplayOptions& options) {
 }
 
 std::vector<std::string> files_written(const ReplayOptions& options) {
-  std::vector<std::string> files = {"steps.csv"};
+  std::vector<std::string> files = {kStepsFile};
   if (!options.write_solutions) return files;
   for (const std::string& file : options.files) files.push_back(fs::path(file).filename());
   return files;
@@ -172,7 +173,7 @@ class Replay {
   RunSummary run(const fs::path& out) {
     Stopwatch watch;
     start_threads(options_.solve.threads);
-    CsvRecorder recorder(out / "steps.csv", csv_header());
+    CsvRecorder recorder(out / kStepsFile, csv_header());
     ProgressLine line("replay");
     const int total = static_cast<int>(options_.files.size());
     try {

@@ -1,10 +1,14 @@
 // cleave rerun: one run again, from its manifest alone; its rows must be those that it left, in all but times and threads.
+#include <filesystem>
 #include <memory>
+#include <span>
 #include <stdexcept>
 
 #include "harness/base/numbers.h"
+#include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
 #include "harness/commands/repeated_run.h"
+#include "harness/files/manifest.h"
 #include "harness/files/output_directory.h"
 
 namespace cleave {
@@ -12,13 +16,17 @@ namespace {
 
 struct RerunOptions {
   std::string cell, out, threads;
+  bool force = false;
 };
 
 int rerun(const RerunOptions& options, const std::string& program) {
   if (options.cell.empty()) throw std::invalid_argument("CELL: the output directory of a run is required");
-  RepeatedRun run{program, options.cell, options.out, {}};
+  RepeatedRun run{program, options.cell, options.out, {}, options.force};
   if (!options.threads.empty()) run.threads = parse_integer("--threads", options.threads, {1, 1024});
-  if (!options.out.empty()) check_output_directory(options.out, false, {"steps.csv"});
+  if (!options.out.empty()) check_output_directory(options.out, options.force, {kStepsFile});
+  if (const std::filesystem::path steps = std::filesystem::path(options.cell) / kStepsFile;
+      !options.out.empty())
+    check_not_read((std::filesystem::path(options.out) / kStepsFile).string(), std::span(&steps, 1));
   CheckList list;
   if (!check_repeated_run(run, list)) return kExitInterrupted;
   return list.failures() == 0 ? kExitOk : kExitVerifyFailed;
@@ -34,6 +42,7 @@ std::function<int()> declare_rerun(CLI::App& app, const std::vector<std::string>
       ->type_name("DIR");
   app.add_option("--threads", options->threads, "threads of a solve, in place of those it had")
       ->type_name("N");
+  app.add_flag("--force", options->force, "overwrite the steps.csv that --out holds");
   return [options, argv] { return rerun(*options, argv.front()); };
 }
 

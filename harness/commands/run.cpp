@@ -10,6 +10,7 @@
 #include "harness/experiment/options.h"
 #include "harness/files/build_info.h"
 #include "harness/files/json_writer.h"
+#include "harness/files/manifest.h"
 
 namespace cleave {
 namespace {
@@ -40,8 +41,8 @@ int run(const std::map<std::string, std::string>& given, bool print_key,
     std::printf("%s", key_text(options).c_str());
     return kExitOk;
   }
-  std::vector<std::string> files = {"steps.csv"};
-  if (options.record_motion) files.push_back("motion.h5");
+  std::vector<std::string> files = {kStepsFile};
+  if (options.record_motion) files.push_back(kMotionFile);
   if (options.explain_model) files.push_back(kFindingsFile);
   return simulate("run", argv, options, files);
 }

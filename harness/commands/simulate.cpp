@@ -11,6 +11,7 @@
 #include "harness/experiment/model_watch.h"
 #include "harness/experiment/option_values.h"
 #include "harness/files/csv_recorder.h"
+#include "harness/files/manifest.h"
 #include "harness/files/output_directory.h"
 #include "harness/files/whole_file.h"
 
@@ -29,7 +30,7 @@ int simulate(const std::string& command, const std::vector<std::string>& argv, c
   check_output_directory(options.out, options.force, files);
   print_left_out(options);
   std::optional<MotionRecorder> motion;
-  if (options.record_motion) motion.emplace(std::filesystem::path(options.out) / "motion.h5", options);
+  if (options.record_motion) motion.emplace(std::filesystem::path(options.out) / kMotionFile, options);
   std::optional<ModelWatch> watch;
   if (options.explain_model) watch.emplace(options);
   if (motion || watch)
@@ -40,7 +41,7 @@ int simulate(const std::string& command, const std::vector<std::string>& argv, c
   Simulation simulation(options, stop_requested(), std::move(observe));
   const WorkDescription work = describe_work(command, argv, options, option_values(options), files);
   return do_manifested_work(options, work, [&] {
-    CsvRecorder recorder(std::filesystem::path(options.out) / "steps.csv", csv_header());
+    CsvRecorder recorder(std::filesystem::path(options.out) / kStepsFile, csv_header());
     const auto write = [&recorder](std::span<const StepRecord> rows) { recorder.append(csv_lines(rows)); };
     ProgressLine line(options.scene.text);
     RunSummary summary = simulation.run(write, [&line](int done, int total) { line.update(done, total); });

@@ -8,17 +8,27 @@
 #include <stdexcept>
 
 #include "harness/base/numbers.h"
+#include "harness/commands/check_list.h"
 #include "harness/commands/collected_tables.h"
 #include "harness/commands/command.h"
 #include "harness/commands/measured_cells.h"
 #include "harness/commands/repeated_run.h"
-#include "harness/commands/verify_checks.h"
 #include "harness/commands/verify_directory.h"
+#include "harness/commands/verify_problem_file.h"
+#include "harness/files/checksums.h"
+#include "harness/files/manifest.h"
 
 namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Nothing vouches for it but the other files of its directory.
+bool is_file_of_run(const fs::path& path) {
+  std::error_code none;
+  return fs::exists(path, none) && (path.filename() == kStepsFile || path.filename() == kManifestFile ||
+                                    path.filename() == kChecksumsFile);
+}
 
 void verify_file(const fs::path& path, CheckList& list) {
   if (path.extension() == ".csv") return check_collected_tables(path, list);
@@ -72,6 +82,8 @@ int verify(const VerifyOptions& options, const std::string& program) {
     std::error_code none;  // what cannot be looked at is no directory, and reading it says why
     if (fs::is_directory(path, none)) {
       verify_directory(path, list);
+    } else if (is_file_of_run(path)) {
+      verify_directory(fs::absolute(path).parent_path(), list);
     } else {
       verify_file(path, list);
     }
@@ -87,8 +99,9 @@ int verify(const VerifyOptions& options, const std::string& program) {
 
 std::function<int()> declare_verify(CLI::App& app, const std::vector<std::string>& argv) {
   const auto options = std::make_shared<VerifyOptions>();
-  app.add_option("paths", options->paths,
-                 "problem files, directories that hold them or steps.csv, or tables of cleave collect")
+  app.add_option(
+         "paths", options->paths,
+         "problem files, output directories or directories of problem files, or tables of cleave collect")
       ->type_name("PATHS");
   app.add_option("--rerun", options->rerun,
                  "runs of each directory to repeat, with their own number of threads and with another")

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "harness/commands/verify_checks.h"
+#include "harness/commands/check_list.h"
 
 namespace cleave {
 

@@ -1,4 +1,5 @@
 #include "harness/commands/verify_directory.h"
+#include "harness/commands/verify_problem_file.h"
 
 #include <algorithm>
 #include <optional>
@@ -17,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_problem_file(const fs::path& name) { return name.extension() == ".h5" && name != "motion.h5"; }
+bool is_problem_file(const fs::path& name) { return name.extension() == ".h5" && name != kMotionFile; }
 
 // The manifest, where it can be read. One beside checksums is of a program that says files and schema.
 std::optional<StoredManifest> check_manifest(const fs::path& directory, bool has_checksums, CheckList& list) {
@@ -90,7 +91,7 @@ void check_run_id(const fs::path& directory, const StoredManifest& manifest, Che
            "run_id " + manifest.run_id + (found == manifest.run_id ? "" : "; its options give " + found));
 }
 
-const std::vector<std::string> kFilesOfRun = {kManifestFile, "steps.csv"};
+const std::vector<std::string> kFilesOfRun = {kManifestFile, kStepsFile};
 
 void check_problem_files(const fs::path& directory, CheckList& list) {
   for (const std::string& name : names_in(directory))
@@ -126,7 +127,7 @@ void verify_directory(const fs::path& directory, CheckList& list) {
   if (is_campaign(directory)) return verify_campaign(directory, list);
   const std::vector<std::string> names = names_in(directory);
   const auto holds = [&](const char* name) { return std::ranges::count(names, name) > 0; };
-  const bool is_run = holds("steps.csv") || holds(kManifestFile) || holds(kChecksumsFile);
+  const bool is_run = holds(kStepsFile) || holds(kManifestFile) || holds(kChecksumsFile);
   if (!is_run && std::ranges::none_of(names, is_problem_file))
     throw std::invalid_argument(directory.string() + ": holds neither problem files (.h5) nor steps.csv");
   if (!is_run) return check_problem_files(directory, list);

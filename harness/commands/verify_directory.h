@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/commands/verify_checks.h"
+#include "harness/commands/check_list.h"
 
 namespace cleave {
 

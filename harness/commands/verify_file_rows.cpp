@@ -1,4 +1,5 @@
 #include "harness/commands/verify_file_rows.h"
+#include "harness/commands/verify_problem_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +20,7 @@
 #include "harness/experiment/splitter.h"
 #include "harness/experiment/step_columns.h"
 #include "harness/experiment/step_record.h"
+#include "harness/files/manifest.h"
 #include "solver/problem_hash.h"
 #include "solver/residual.h"
 #include "solver/vertex_cover.h"
@@ -242,7 +244,7 @@ void check_file_rows(const fs::path& directory, const StepsTable& table, const S
   std::size_t without = 0;
   for (std::size_t row = 0; row < table.row_count(); ++row) {
     const std::string& name = table.cell(row, "problem_file");
-    const std::string subject = (directory / "steps.csv").string() + " " + StepsTable::line_of(row);
+    const std::string subject = (directory / kStepsFile).string() + " " + StepsTable::line_of(row);
     if (name == "-") {
       ++without;
       continue;
@@ -258,9 +260,9 @@ void check_file_rows(const fs::path& directory, const StepsTable& table, const S
     check_row(table, row, file, problem, needs_solutions, subject, list);
   }
   if (without > 0)
-    CheckList::note((directory / "steps.csv").string(), std::to_string(without) + " of " +
-                                                            std::to_string(table.row_count()) +
-                                                            " rows have no problem file to compare with");
+    CheckList::note((directory / kStepsFile).string(), std::to_string(without) + " of " +
+                                                           std::to_string(table.row_count()) +
+                                                           " rows have no problem file to compare with");
 }
 
 }  // namespace cleave

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
+#include "harness/commands/check_list.h"
 #include "harness/commands/expected_rows.h"
-#include "harness/commands/verify_checks.h"
 #include "harness/commands/verify_table.h"
 
 namespace cleave {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "harness/commands/verify_checks.h"
+#include "harness/commands/check_list.h"
 #include "harness/commands/verify_table.h"
 
 namespace cleave {

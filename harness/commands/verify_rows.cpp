@@ -176,7 +176,7 @@ std::optional<ExpectedRows> check_options(const fs::path& directory, const Store
 }  // namespace
 
 void check_steps_table(const fs::path& directory, const StoredManifest& manifest, CheckList& list) {
-  const fs::path path = directory / "steps.csv";
+  const fs::path path = directory / kStepsFile;
   const std::string subject = path.string();
   std::optional<StepsTable> table = check_header(path, manifest, list);
   if (!table) return;

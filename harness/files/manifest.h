@@ -19,6 +19,9 @@ namespace cleave {
 
 constexpr const char* kManifestSchema = "cleave-run-1";
 inline constexpr const char* kManifestFile = "manifest.json";
+// What lies beside it.
+inline constexpr const char* kStepsFile = "steps.csv";
+inline constexpr const char* kMotionFile = "motion.h5";  // of run --record-motion
 
 // What is known before the work begins.
 struct WorkDescription {

@@ -63,7 +63,7 @@ std::vector<fs::path> files_of_earlier_work(const fs::path& directory) {
   try {
     const StoredManifest manifest = read_manifest(directory / kManifestFile);
     // An older program did not say; of its files only this one was ever taken away.
-    names = manifest.files.empty() ? std::vector<std::string>{"motion.h5"} : manifest.files;
+    names = manifest.files.empty() ? std::vector<std::string>{kMotionFile} : manifest.files;
   } catch (const std::invalid_argument&) {
     // None, or damaged: nothing is known, so nothing is deleted, and verify names what is left.
   }

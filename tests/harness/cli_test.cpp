@@ -98,6 +98,8 @@ const std::vector<BadInput> kBadInputs = {
      {"--partitioner", "tau-mr is a parameter of partitioner mr", "mindp has"}},
     {{"--partitioner", "mindp@max-bodies=0"}, {"--partitioner mindp@max-bodies", "0 is not in [1, inf)"}},
     {{"--partitioner", "mindp@max-bodies"}, {"--partitioner", "name@parameter=value"}},
+    {{"--steps", "2147483648"}, {"--steps: 2147483648 is not in [0, 2147483647]"}},
+    {{"--repeats", "99999999999999999999"}, {"--repeats: 99999999999999999999 is not in [1, 2147483647]"}},
     {{"--partitioner", "mindp", "--tau-mr", "5"},
      {"--tau-mr", "partitioner mr", "nothing in this run has it"}},
     {{"--sweeps", "5"}, {"--sweeps", "solvers pgs, pgs-colored", "nothing in this run has it"}},
@@ -330,10 +332,9 @@ TEST(Options, EveryOptionThatCanChangeACellHasAColumn) {
       {"dt", "dt_s"}, {"gravity", "gravity_m_per_s2"}, {"repeats", "repeat_count"}};
   // Which rows there are, where they go, what --stiffness and --damping make of cfm and erp, --objective of refiners, and
   // what rows that it refuses name in their reason.
-  const std::set<std::string> not_in_a_cell = {"measure-every", "skip",          "out",
-                                               "force",         "record-motion", "stiffness",
-                                               "damping",       "memory-limit",  "objective",
-                                               "explain-model"};
+  const std::set<std::string> not_in_a_cell = {"measure-every", "skip",         "out",     "force",
+                                               "record-motion", "stiffness",    "damping", "memory-limit",
+                                               "objective",     "explain-model"};
   std::set<std::string> names;
   for (const Column& column : columns()) names.insert(column.name);
   for (const OptionSpec& spec : run_option_specs()) {

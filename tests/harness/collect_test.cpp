@@ -314,6 +314,23 @@ TEST_F(Campaigns, AreCollectedIntoAllTablesOrNone) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 3);
 }
 
+TEST_F(Campaigns, AFileOfARunIsVerifiedWithItsDirectory) {
+  for (const char* name : {"steps.csv", "manifest.json"})
+    EXPECT_EQ(run_cleave({"verify", directory_ / "a/cell1" / name}).out,
+              run_cleave({"verify", directory_ / "a/cell1"}).out);
+}
+
+TEST_F(Campaigns, AreNotReplacedByTheirTable) {
+  const std::string rows = read_text(steps("a", "cell1"));
+  for (const fs::path& out : {steps("a", "cell1"), directory_ / "a/cell2/../cell1/steps.csv"}) {
+    const ProgramResult result = run_cleave({"collect", directory_ / "a", "--out", out, "--force"});
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_NE(result.err.find("cell1/steps.csv, which is read; name another file"), std::string::npos)
+        << result.err;
+  }
+  EXPECT_EQ(read_text(steps("a", "cell1")), rows);
+}
+
 TEST_F(Campaigns, WithANameThatIsTooLongAreRefusedByIt) {
   const std::string name(300, 'x');
   const ProgramResult result = run_cleave({"collect", directory_ / "a", "--out", directory_ / name});

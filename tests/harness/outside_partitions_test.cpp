@@ -127,6 +127,11 @@ TEST_F(OutsidePartitions, ExportRefusesInOneLine) {
   EXPECT_EQ(read_text(out), "mine");
   EXPECT_EQ(run_cleave({"export", problem(), "--format", "metis", "--out", out, "--force"}).exit_code, 0);
   EXPECT_TRUE(read_text(out).starts_with("20 "));
+  const std::string stored = read_text(problem());
+  EXPECT_NE(error_of({"export", problem(), "--format", "metis", "--out", problem(), "--force"})
+                .find("which is read"),
+            std::string::npos);
+  EXPECT_EQ(read_text(problem()), stored);
 }
 
 TEST_F(OutsidePartitions, ExportedPartsAreThoseThatWereStored) {

@@ -798,6 +798,9 @@ TEST(Rerun, RepeatsACellAndHoldsItsRowsAgainstIt) {
   EXPECT_TRUE(kept.out.starts_with("ok    ")) << kept.out;
   EXPECT_EQ(read_csv(campaign / "again/steps.csv").column("threads"), Words(2, "2"));
   EXPECT_EQ(run_cleave({"rerun", cell, "--out", campaign / "again"}).exit_code, 1);  // holds one already
+  EXPECT_EQ(run_cleave({"rerun", cell, "--out", campaign / "again", "--force"}).exit_code, 0);
+  EXPECT_NE(run_cleave({"rerun", cell, "--out", cell, "--force"}).err.find("which is read"),
+            std::string::npos);
 
   std::string text = read_text(cell / "steps.csv");
   const std::string hash = read_csv(cell / "steps.csv").at(1, "state_hash");

@@ -574,7 +574,7 @@ TEST_F(Verify, EveryCheckOfTheTableCanFail) {
   EXPECT_EQ(broken, checks_of_readme());
 
   int calls = 0;
-  for (const char* file : {"verify_checks.cpp", "verify_directory.cpp", "verify_rows.cpp",
+  for (const char* file : {"verify_problem_file.cpp", "verify_directory.cpp", "verify_rows.cpp",
                            "verify_row_sums.cpp", "verify_row_groups.cpp", "verify_file_rows.cpp"}) {
     const std::string text = read_text(fs::path(CLEAVE_SOURCE_DIR) / "harness/commands" / file);
     for (std::size_t at = text.find("list.add("); at != std::string::npos;

@@ -339,6 +339,32 @@ TEST_P(SolverContractTest, SaysWhatRan) {
   }
 }
 
+// A body that two rows want to have other velocities.
+StepProblem make_wedge(double compliance) {
+  StepProblem problem;
+  problem.h_s = kTestStep_s;
+  append_body(problem, 3, {1, 1, 1}, {0.1, 0, 0, 0, 0, 0});
+  for (const double wanted : {1.0 / 3, -1.0 / 7})
+    append_row(problem, {.jacobian_a = {1.1, 0, 0, 0, 0, 0}, .rhs = wanted, .compliance = compliance});
+  return problem;
+}
+
+std::string reason_of(const StepProblem& problem) {
+  const std::vector<int> part_of_body(1, 0);
+  Solution solution{problem.warm_impulse, {}};
+  return make_step_solver("exact", SolveOptions{})->solve(problem, part_of_body, solution).message;
+}
+
+// Impulses of 1e12 N s have last digits of 1e-4 N s; where nothing can be right, digits are not what is wrong.
+TEST(StatusReason, NamesRoundingWhereItMayBeAllThatIsLeft) {
+  EXPECT_EQ(reason_of(make_wedge(1e-4)), "");
+  EXPECT_NE(reason_of(make_wedge(1e-12)).find("rounding of its impulses"), std::string::npos)
+      << reason_of(make_wedge(1e-12));
+  const std::string contradiction = reason_of(make_wedge(0));
+  EXPECT_NE(contradiction.find("stopped above the limit"), std::string::npos) << contradiction;
+  EXPECT_EQ(contradiction.find("rounding"), std::string::npos) << contradiction;
+}
+
 TEST(PivotTest, StartsFromAsManySweepsAsAskedFor) {
   // Soft, so that pivot itself comes to an end.
   const StepProblem problem = make_pile(13, {.columns = 3, .rows = 2, .layers = 3, .cfm = 1e-1});

@@ -1,8 +1,7 @@
-#include "harness/commands/verify_checks.h"
+#include "harness/commands/verify_problem_file.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 #include <numeric>
 #include <regex>
@@ -10,7 +9,6 @@
 
 #include "harness/base/hash.h"
 #include "harness/base/numbers.h"
-#include "harness/base/printable_text.h"
 #include "harness/commands/stored_partition.h"
 #include "harness/experiment/algorithms.h"
 #include "harness/experiment/friction.h"
@@ -169,22 +167,6 @@ void check_friction_model(const ProblemFile& file, const std::string& subject, C
 }
 
 }  // namespace
-
-void CheckList::add(bool passed, const std::string& subject, const std::string& text) {
-  ++checks_;
-  failures_ += passed ? 0 : 1;
-  std::printf("%s  %s\n", passed ? "ok  " : "FAIL", printable(subject + ": " + text).c_str());
-}
-
-void CheckList::note(const std::string& subject, const std::string& text) { say(subject + ": " + text); }
-
-void Findings::add(const std::string& text) {
-  if (++count_ <= kTold) told_ += "; " + text;
-}
-
-std::string Findings::text() const {
-  return told_ + (count_ > kTold ? "; and " + std::to_string(count_ - kTold) + " more" : "");
-}
 
 bool same_residual(double stored_m_per_s, double found_m_per_s) {
   if (std::isnan(stored_m_per_s) || std::isnan(found_m_per_s))

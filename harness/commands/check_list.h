@@ -1,11 +1,7 @@
-// What `cleave verify` finds out from one problem file alone.
+// What the checks of `cleave verify` and `cleave rerun` come to.
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <vector>
-
-#include "harness/files/problem_file.h"
 
 namespace cleave {
 
@@ -35,16 +31,5 @@ class Findings {
   int count_ = 0;
   std::string told_;
 };
-
-// The judge's numbers agree: equal up to the last digits, or both no numbers.
-bool same_residual(double stored_m_per_s, double found_m_per_s);
-
-// Index of the first id outside [0, n), or -1.
-int find_bad_part_id(const std::vector<int>& part_of_body);
-
-// Of the file: its friction model. Of every solution: its label, its residual judged anew against the stored
-// one, its velocity against v0 + M^-1 J^T impulse. Of every partition: its label, its part ids, and the same
-// parts when the stored partitioner and refiner split the problem again with the stored options.
-void check_problem_file(const std::filesystem::path& path, const ProblemFile& file, CheckList& list);
 
 }  // namespace cleave
