@@ -3,7 +3,7 @@
 
 #include <signal.h>
 
-#include <initializer_list>
+#include "harness/base/stop_signals.h"
 
 namespace cleave {
 
@@ -14,14 +14,14 @@ void check_threads(int count);
 // loads it the first time it needs it and ends the program where it cannot: so it is made to need it now.
 void load_unwinder();
 
-// While it lives, new threads, and those that they make, start with SIGINT and SIGTERM blocked. A caller that blocks these in its
+// While it lives, new threads, and those that they make, start with the signals to stop blocked. A caller that blocks these in its
 // own thread, as METIS needs, would otherwise have them delivered to one of the new ones.
 class SignalsHeldBack {
  public:
   SignalsHeldBack() {
     sigset_t stop;
     ::sigemptyset(&stop);
-    for (const int signal : {SIGINT, SIGTERM}) ::sigaddset(&stop, signal);
+    for (const int signal : kStopSignals) ::sigaddset(&stop, signal);
     ::pthread_sigmask(SIG_BLOCK, &stop, &before_);
   }
   SignalsHeldBack(const SignalsHeldBack&) = delete;

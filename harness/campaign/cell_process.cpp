@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "harness/base/end_with_parent.h"
+#include "harness/base/stop_signals.h"
 
 namespace cleave {
 namespace {
@@ -25,7 +26,9 @@ constexpr off_t kMostPrinted = 1 << 20;
 sigset_t waited_for() {
   sigset_t set;
   ::sigemptyset(&set);
-  for (const int signal : {SIGCHLD, SIGINT, SIGTERM}) ::sigaddset(&set, signal);
+  ::sigaddset(&set, SIGCHLD);
+  for (const int signal : kStopSignals)
+    if (is_listened_to(signal)) ::sigaddset(&set, signal);
   return set;
 }
 
@@ -134,7 +137,7 @@ CellEnd run_to_end(const CellCommand& command, bool& interrupted) {
   CellProcess process(command);
   while (!process.has_ended()) {
     const int signal = signals.wait(kLookEvery_s);
-    if (signal != SIGINT && signal != SIGTERM) continue;
+    if (signal == 0 || signal == SIGCHLD) continue;
     process.send(SIGTERM);
     interrupted = true;
   }

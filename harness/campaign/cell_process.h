@@ -54,16 +54,16 @@ class CellProcess {
   bool ended_ = false;
 };
 
-// Makes the process and waits for its end; SIGINT and SIGTERM, which are waited for too, are passed on to it as SIGTERM. True into
+// Makes the process and waits for its end; signals to stop, which are waited for too, are passed on to it as SIGTERM. True into
 // `interrupted` where one came.
 CellEnd run_to_end(const CellCommand& command, bool& interrupted);
 
-// While it stands, these signals wait until they are asked for: SIGCHLD, SIGINT, SIGTERM. Processes of cells get them as ever.
+// While it stands, these signals wait until they are asked for: SIGCHLD and those to stop. Processes of cells get them as ever.
 class SignalsWaitedFor {
  public:
   SignalsWaitedFor();
   ~SignalsWaitedFor();
-  // The next of SIGCHLD, SIGINT, SIGTERM, or 0 after so many seconds.
+  // The next of them, or 0 after so many seconds.
   int wait(double seconds) const;
 };
 

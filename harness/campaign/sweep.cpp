@@ -69,7 +69,7 @@ class Sweep {
     save_index();
     while (start_cells(), !running_.empty()) {
       const int signal = signals.wait(kLookEvery_s);
-      if (signal == SIGINT || signal == SIGTERM) stop(signal);
+      if (signal != 0 && signal != SIGCHLD) stop(signal);
       look_at_cells();
       if (seconds_since(saved_at_) > std::max(kIndexEvery_s, save_s_ / kIndexShare)) save_index();
       show_progress();
@@ -140,8 +140,9 @@ class Sweep {
     return {first, first + options_.pin};
   }
 
-  // The first one is for the cells; a second one is for us.
+  // The first one is for the cells; a second one is for us, unless it is the second time that a terminal hangs up.
   void stop(int signal) {
+    if (summary_.interrupted && signal == SIGHUP) return;
     if (summary_.interrupted) {
       running_.clear();
       ::signal(signal, SIG_DFL);

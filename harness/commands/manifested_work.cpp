@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "harness/base/printable_text.h"
+#include "harness/base/stop_signals.h"
 #include "harness/commands/command.h"
 #include "harness/experiment/option_values.h"
 #include "harness/experiment/step_record.h"
@@ -19,12 +20,11 @@ namespace {
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-constexpr int kStopSignals[] = {SIGINT, SIGTERM};
-
-// The next one, of either kind, ends the program as if nothing had been set.
-void take_stop(int) {
+// The next one, of any kind, ends the program as if nothing had been set; but a terminal that is closed may hang up twice.
+void take_stop(int taken) {
   stop = true;
-  for (const int signal : kStopSignals) ::signal(signal, SIG_DFL);
+  for (const int signal : kStopSignals)
+    if (is_listened_to(signal)) ::signal(signal, signal == SIGHUP && taken == SIGHUP ? SIG_IGN : SIG_DFL);
 }
 
 void stop_on_signals() {
@@ -32,7 +32,8 @@ void stop_on_signals() {
   action.sa_handler = take_stop;
   action.sa_flags = SA_RESTART;
   for (const int signal : kStopSignals) ::sigaddset(&action.sa_mask, signal);  // one handler after the other
-  for (const int signal : kStopSignals) ::sigaction(signal, &action, nullptr);
+  for (const int signal : kStopSignals)
+    if (is_listened_to(signal)) ::sigaction(signal, &action, nullptr);
 }
 
 int exit_code(const RunSummary& summary) {

@@ -14,7 +14,7 @@
 
 namespace cleave {
 
-// True once the program was interrupted (SIGINT, SIGTERM) inside do_manifested_work.
+// True once the program was interrupted (stop_signals.h) inside do_manifested_work.
 const std::atomic<bool>& stop_requested();
 
 // Creates the directory, holds its lock (files/directory_lock), takes away what --force overwrites, and does the work

@@ -285,6 +285,32 @@ TEST(Signals, ARecordingEndsBetweenSteps) {
     EXPECT_TRUE(fs::exists(directory / "out" / name));
 }
 
+// A terminal that is closed sends two; nohup has them ignored.
+TEST(Signals, ASecondHangUpChangesNothing) {
+  const TemporaryDirectory directory;
+  const Running running(directory / "out",
+                        {"run", "--scene", "rock_pile", "--bodies", "12", "--steps", "1000000"}, 10);
+  ::kill(running.process, SIGHUP);
+  for (int k = 0; k < 20; ++k) ::kill(running.process, SIGHUP);
+  EXPECT_EQ(finish_cleave(running.process), 130);
+}
+
+TEST(Signals, AHangUpIsNotHeardUnderNohup) {
+  const TemporaryDirectory directory;
+  ::signal(SIGHUP, SIG_IGN);
+  const Running running(directory / "out",
+                        {"run", "--scene", "rock_pile", "--bodies", "12", "--steps", "1000000"}, 10);
+  ::signal(SIGHUP, SIG_DFL);
+  ::kill(running.process, SIGHUP);
+  const int lines = count_lines(read_text(running.csv));
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+  while (count_lines(read_text(running.csv)) < lines + 100 && std::chrono::steady_clock::now() < deadline)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_GE(count_lines(read_text(running.csv)), lines + 100);
+  ::kill(running.process, SIGTERM);
+  EXPECT_EQ(finish_cleave(running.process), 130);
+}
+
 // Both are on their way before the program sees one.
 TEST(Signals, ASecondOneEndsAtOnce) {
   const TemporaryDirectory directory;

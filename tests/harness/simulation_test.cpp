@@ -334,7 +334,7 @@ int interrupted_run(const std::filesystem::path& out, int signal) {
 }
 
 TEST(Interrupt, LeavesWholeStepsAndSaysSo) {
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const TemporaryDirectory directory;
     EXPECT_EQ(interrupted_run(directory / "out", signal), 130);
     expect_complete_lines(read_text(directory / "out/steps.csv"));

@@ -380,11 +380,12 @@ TEST(SweepMemory, ACellWithoutMemoryIsARow) {
 
 TEST(Sweep, AnInterruptReachesTheCellAndIsResumed) {
   const Campaign campaign(std::string(kEndless) + "seed = [1, 2]\n");
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
     const pid_t sweep = start_cleave(campaign.words({}));
     const pid_t cell = wait_for_cell(sweep, campaign.out() / "cells");
     ASSERT_GT(cell, 0);
     ::kill(sweep, signal);
+    if (signal == SIGHUP) ::kill(sweep, signal);  // a terminal that is closed hangs up twice
     EXPECT_EQ(finish_cleave(sweep), 130);
     EXPECT_TRUE(is_gone(cell));
     EXPECT_EQ(campaign.index().column("status"), Words(2, "pending"));
