@@ -41,7 +41,7 @@ std::vector<std::string> scene_parameters(const Given& stored) {
 
 // Whose row carries a content's hash, as file@0123456789abcdef: what a manifest knows is not where it lay.
 void check_can_be_found(const Given& taken) {
-  for (const char* option : {"scene", "partitioner", "refiner", "solver"})
+  for (const char* option : {"scene", "partitioner", "refiner", "solver", "body-order"})
     for (const std::string& item : split_list(value_of(taken, option))) {
       if (!fingerprint_of(item).empty())
         throw std::invalid_argument("option " + std::string(option) + ": " + item +

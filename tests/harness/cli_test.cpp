@@ -46,7 +46,7 @@ const std::vector<BadInput> kBadInputs = {
     {{"--match-tolerance", "-1"}, {"--match-tolerance", "-1", "[0, inf)"}},
     {{"--max-bodies", "0"}, {"--max-bodies", "0", "[1, inf)"}},
     {{"--max-bodies", "2.5"}, {"--max-bodies", "'2.5'", "whole number", "[1, inf)"}},
-    {{"--max-bodies", "99999999999"}, {"--max-bodies", "99999999999", "[1, inf)"}},
+    {{"--max-bodies", "99999999999"}, {"--max-bodies", "99999999999", "[1, 2147483647]"}},
     {{"--tau-mr", "1"}, {"--tau-mr", "1", "(1, inf)"}},
     {{"--tau-mix", "1.1"}, {"--tau-mix", "1.1", "[0, 1]"}},
     {{"--tau-mix", "-0.1"}, {"--tau-mix", "-0.1", "[0, 1]"}},

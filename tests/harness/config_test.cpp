@@ -203,6 +203,20 @@ TEST_F(Config, ASessionBesideItTakesNoRepeatsFromIt) {
   EXPECT_EQ(key(Words{"--config", manifest("base"), "--session"}), key(kShort + Words{"--session"}));
 }
 
+TEST_F(Config, ABodyOrderInAFileIsGivenBesideIt) {
+  const std::filesystem::path order = directory_ / "order.txt";
+  std::ofstream(order) << "3\n2\n1\n0\n";
+  const Arguments words = {"--scene",      "rock_pile",
+                           "--bodies",     "4",
+                           "--steps",      "2",
+                           "--body-order", "file@" + order.string(),
+                           "--out",        directory_ / "base"};
+  const ProgramResult base = run_cleave(Arguments{"run"} + words);
+  ASSERT_EQ(base.exit_code, 0) << base.err;
+  expect_error({"run", "--config", manifest("base")},
+               "is known by its content, not by its file; give --body-order");
+}
+
 // Rows name such a scene by its content; where it lies has to be said again.
 TEST_F(Config, ASceneInAFileIsGivenBesideIt) {
   const std::string file = std::string("file@path=") + CLEAVE_SOURCE_DIR + "/scenarios/files/pile.toml";
