@@ -2,7 +2,8 @@
 //
 // All five of the paper (Liu & Andrews 2022, section 3.1) grow parts with one loop (grow.h) and differ in the
 // body they choose next; those that do not grow number their parts by the lowest body. Ties: lowest body index. To
-// add one: a new file, its make_...() and a row in registry.cpp; the row declares its parameters and promises what its parts are.
+// add one: a new file, its make_...() and a row in registry.cpp; the row declares its parameters and promises what its
+// parts are.
 #pragma once
 
 #include <optional>

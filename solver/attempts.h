@@ -31,7 +31,8 @@ class Attempts {
   SetKind takes();
 
   // step: prepared with the problem. It is so again when false is returned; after proximal steps that solved the problem it is
-  // left prepared with their copy of it, of the same bodies and rows. warm_impulse: along the axes of the set. True where the impulses of the state are within the limit.
+  // left prepared with their copy of it, of the same bodies and rows. warm_impulse: along the axes of the set. True where the
+  // impulses of the state are within the limit.
   bool run(PreparedStep& step, Kernel& kernel, std::span<const double> warm_impulse, SolveState& state,
            SolveSummary& summary);
 

@@ -42,13 +42,16 @@ void ProgressLine::show(const std::string& text) {
 }
 
 std::optional<double> expected_seconds(const std::string& printed) {
-  const std::size_t place = printed.rfind("step ");
   int done = 0, total = 0;
   long elapsed_s = 0, left_s = 0;
-  if (place == std::string::npos ||
-      std::sscanf(printed.c_str() + place, kSteps, &done, &total, &elapsed_s, &left_s) != 4)
-    return std::nullopt;
-  return static_cast<double>(elapsed_s + left_s);
+  for (std::size_t end = printed.size(); end > 0;) {
+    const std::size_t place = printed.rfind("step ", end - 1);
+    if (place == std::string::npos) break;
+    if (std::sscanf(printed.c_str() + place, kSteps, &done, &total, &elapsed_s, &left_s) == 4)
+      return static_cast<double>(elapsed_s + left_s);
+    end = place;
+  }
+  return std::nullopt;
 }
 
 }  // namespace cleave

@@ -140,7 +140,7 @@ class Sweep {
     return {first, first + options_.pin};
   }
 
-  // The first one is for the cells; a second one is for us, unless it is the second time that a terminal hangs up.
+  // The first one is for the cells; a second one is for us, unless it is a hang-up: a terminal that is closed may send two.
   void stop(int signal) {
     if (summary_.interrupted && signal == SIGHUP) return;
     if (summary_.interrupted) {

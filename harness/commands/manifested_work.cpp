@@ -20,11 +20,10 @@ namespace {
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-// The next one, of any kind, ends the program as if nothing had been set; but a terminal that is closed may hang up twice.
-void take_stop(int taken) {
+// The next one ends the program as if nothing had been set, unless it is a hang-up: a terminal that is closed may send two.
+void take_stop(int) {
   stop = true;
-  for (const int signal : kStopSignals)
-    if (is_listened_to(signal)) ::signal(signal, signal == SIGHUP && taken == SIGHUP ? SIG_IGN : SIG_DFL);
+  for (const int signal : kStopSignals) ::signal(signal, signal == SIGHUP ? SIG_IGN : SIG_DFL);
 }
 
 void stop_on_signals() {

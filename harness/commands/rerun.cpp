@@ -1,7 +1,6 @@
 // cleave rerun: one run again, from its manifest alone; its rows must be those that it left, in all but times and threads.
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <stdexcept>
 
 #include "harness/base/numbers.h"
@@ -14,6 +13,8 @@
 namespace cleave {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct RerunOptions {
   std::string cell, out, threads;
   bool force = false;
@@ -23,10 +24,11 @@ int rerun(const RerunOptions& options, const std::string& program) {
   if (options.cell.empty()) throw std::invalid_argument("CELL: the output directory of a run is required");
   RepeatedRun run{program, options.cell, options.out, {}, options.force};
   if (!options.threads.empty()) run.threads = parse_integer("--threads", options.threads, {1, 1024});
-  if (!options.out.empty()) check_output_directory(options.out, options.force, {kStepsFile});
-  if (const std::filesystem::path steps = std::filesystem::path(options.cell) / kStepsFile;
-      !options.out.empty())
-    check_not_read((std::filesystem::path(options.out) / kStepsFile).string(), std::span(&steps, 1));
+  if (!options.out.empty()) {
+    check_output_directory(options.out, options.force, {kStepsFile});
+    const fs::path read[] = {fs::path(options.cell) / kStepsFile};
+    check_not_read(fs::path(options.out) / kStepsFile, read);
+  }
   CheckList list;
   if (!check_repeated_run(run, list)) return kExitInterrupted;
   return list.failures() == 0 ? kExitOk : kExitVerifyFailed;

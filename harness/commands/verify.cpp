@@ -23,11 +23,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Nothing vouches for it but the other files of its directory.
+// Nothing vouches for it but the other files of its directory. A collected table may have the name, but no manifest beside it.
 bool is_file_of_run(const fs::path& path) {
   std::error_code none;
-  return fs::exists(path, none) && (path.filename() == kStepsFile || path.filename() == kManifestFile ||
-                                    path.filename() == kChecksumsFile);
+  const fs::path name = path.filename();
+  return (name == kStepsFile || name == kManifestFile || name == kChecksumsFile) &&
+         fs::exists(fs::absolute(path).parent_path() / kManifestFile, none);
 }
 
 void verify_file(const fs::path& path, CheckList& list) {

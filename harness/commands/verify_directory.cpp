@@ -1,5 +1,4 @@
 #include "harness/commands/verify_directory.h"
-#include "harness/commands/verify_problem_file.h"
 
 #include <algorithm>
 #include <optional>
@@ -7,6 +6,7 @@
 
 #include "harness/commands/expected_rows.h"
 #include "harness/commands/verify_campaign.h"
+#include "harness/commands/verify_problem_file.h"
 #include "harness/commands/verify_rows.h"
 #include "harness/files/checksums.h"
 #include "harness/files/directory_lock.h"

@@ -1,5 +1,4 @@
 #include "harness/commands/verify_file_rows.h"
-#include "harness/commands/verify_problem_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "harness/base/numbers.h"
 #include "harness/commands/stored_partition.h"
 #include "harness/commands/turned_problem.h"
+#include "harness/commands/verify_problem_file.h"
 #include "harness/commands/verify_row_sums.h"
 #include "harness/experiment/cell_measures.h"
 #include "harness/experiment/friction.h"

@@ -180,7 +180,8 @@ void check_steps_table(const fs::path& directory, const StoredManifest& manifest
   const std::string subject = path.string();
   std::optional<StepsTable> table = check_header(path, manifest, list);
   if (!table) return;
-  if (manifest.steps_schema != kStepsSchema || !are_columns_of_schema(table->header())) {
+  const bool is_earlier = manifest.steps_schema == kStepsSchema && are_columns_of_schema(table->header());
+  if (table->header() != header_of_program() && !is_earlier) {
     check_limits(*table, subject, list);
     return CheckList::note(subject, "has the columns of another schema; no more of its rows was checked");
   }

@@ -35,7 +35,7 @@ KernelCost fit_cost(std::span<const CostSample> samples);
 // from the partition alone.
 double modelled_ms(const CostSample& sample, const KernelCost& cost, bool counted);
 
-// Median of |modelled / measured - 1|; NaN without samples.
+// Median (the lower middle one of an even number) of |modelled / measured - 1|; NaN without samples.
 double median_error(std::span<const CostSample> samples, const KernelCost& cost, bool counted);
 // The same of cells, each with the sums over its solves, from the partition alone: what a choice for a scene stands on, where steps that
 // take more factorisations and fewer make up for each other.

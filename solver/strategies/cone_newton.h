@@ -19,8 +19,8 @@
 // are halved until the energy sum_r d_r F_r^2 falls (of a contact its largest F). On piles that are not stiff it mostly converges
 // from the impulses of the step before, on others from where the interior point stalls.
 //
-// Source: Qi and Sun, "A nonsmooth version of Newton's method", Math. Program. 58, 1993; the derivative: Fukushima, Luo and Tseng, "Smoothing functions for second-order-cone complementarity
-// problems", SIAM J. Optim. 12, 2002.
+// Source: Qi and Sun, "A nonsmooth version of Newton's method", Math. Program. 58, 1993; the derivative: Fukushima, Luo and
+// Tseng, "Smoothing functions for second-order-cone complementarity problems", SIAM J. Optim. 12, 2002.
 #pragma once
 
 #include <vector>

@@ -5,11 +5,10 @@
 // contacts with a cone have |lambda_t| <= mu lambda_n in place of bounds. Slacks and multipliers of the bounds, their part of D
 // and of the right-hand side are interval_barrier.h's, those of the cones cone_barrier.h's; this file chooses what their products
 // aim at and how far to step. D_r = 1 / (max(C_r, delta d_r) + sum z / s), where delta keeps D of rows with next to no compliance
-// within what double precision can factor; as residuals are those of C, it changes the way and not the end. Source: Mehrotra, "On the implementation of a
-// primal-dual interior point method", SIAM J. Optim. 2, 1992; Gondzio, "Multiple centrality corrections in a
-// primal-dual method for linear programming", Comput. Optim. Appl. 6, 1996; Friedlander and Orban, "A
-// primal-dual regularized interior-point method for convex quadratic programs", Math. Program. Comput. 4,
-// 2012.
+// within what double precision can factor; as residuals are those of C, it changes the way and not the end. Source:
+// Mehrotra, "On the implementation of a primal-dual interior point method", SIAM J. Optim. 2, 1992; Gondzio, "Multiple centrality
+// corrections in a primal-dual method for linear programming", Comput. Optim. Appl. 6, 1996; Friedlander and Orban, "A primal-dual
+// regularized interior-point method for convex quadratic programs", Math. Program. Comput. 4, 2012.
 //
 // Rows are those along the axes of the impulse set (impulse_set.h): for a turned box the kernel gets the same
 // D as a 3x3 block.

@@ -80,8 +80,8 @@ class InteriorPoint : public Strategy {
   bool has_coulomb_ = false, has_convex_cones_ = false;
   bool is_careful_ = false;  // the iteration has begun anew
   int iterations_left_ = 0, short_steps_ = 0;
-  std::vector<double> warm_impulse_,
-      best_impulse_;  // with convex cones: of the start, and of the first iteration
+  // With convex cones: of the start, and the best before the iteration began anew.
+  std::vector<double> warm_impulse_, earlier_impulse_;
   bool is_start_ = true, best_is_start_ = false;  // of cones, whose error is that of the impulses alone
   bool rounds_ = false;                           // there are rows that delta may matter to
 };
@@ -175,19 +175,20 @@ bool InteriorPoint::run(SolveState& state) {
   if (has_convex_cones_) warm_impulse_ = state.impulse;
   if (has_coulomb_ && end_.attempt(state, iterate_)) return true;
   iterate_.start(state);
-  return search(state) || finish(state) || (has_convex_cones_ && search_from_further_inside(state));
+  if (search(state) || finish(state)) return true;
+  return has_convex_cones_ && iterations_left_ > 0 && search_from_further_inside(state);
 }
 
 // Where it finds no answer either, the better impulses of the two stay.
 bool InteriorPoint::search_from_further_inside(SolveState& state) {
   const double residual = state.residual();
-  best_impulse_ = state.impulse;
+  earlier_impulse_ = state.impulse;
   state.load(warm_impulse_);
   is_careful_ = true;
   begin(state);
   iterate_.start(state, kFurtherInside);
   if (search(state) || finish(state)) return true;
-  if (residual < state.residual()) state.load(best_impulse_);
+  if (residual < state.residual()) state.load(earlier_impulse_);
   return false;
 }
 

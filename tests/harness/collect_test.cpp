@@ -320,6 +320,12 @@ TEST_F(Campaigns, AFileOfARunIsVerifiedWithItsDirectory) {
               run_cleave({"verify", directory_ / "a/cell1"}).out);
 }
 
+TEST_F(Campaigns, ATableOfTheNameOfARunsIsVerifiedAsATable) {
+  const fs::path out = directory_ / "steps.csv";
+  ASSERT_EQ(run_cleave({"collect", directory_ / "a", "--out", out}).exit_code, 0);
+  EXPECT_EQ(count_lines(run_cleave({"verify", out}).out), 4);
+}
+
 TEST_F(Campaigns, AreNotReplacedByTheirTable) {
   const std::string rows = read_text(steps("a", "cell1"));
   for (const fs::path& out : {steps("a", "cell1"), directory_ / "a/cell2/../cell1/steps.csv"}) {

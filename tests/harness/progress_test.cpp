@@ -7,9 +7,10 @@ namespace {
 
 TEST(ExpectedSeconds, AreThoseOfTheLastLine) {
   EXPECT_EQ(expected_seconds("rock_pile: step 34 of 500, 10 s, about 137 s to go\n"), 147);
-  EXPECT_EQ(expected_seconds("a remark\nrock_pile: step 34 of 500, 10 s, about 137 s to go\n"
-                             "rock_pile: step 70 of 500, 20 s, about 123 s to go\nanother\n"),
-            143);
+  EXPECT_EQ(
+      expected_seconds("a remark\nrock_pile: step 34 of 500, 10 s, about 137 s to go\n"
+                       "rock_pile: step 70 of 500, 20 s, about 123 s to go\nthe world stopped at step 80\n"),
+      143);
 }
 
 TEST(ExpectedSeconds, AreUnknownWithoutALine) {
