@@ -48,34 +48,13 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
 
   for (int step = 0; step < options_.steps && !stop_; ++step) {
     StepRecord common = blank_row(step);
-    world.before_step(step);
-    Stopwatch watch;
-
-    // Where shapes touch.
-    const std::vector<ContactPoint> contacts = world.collide(options_.contact_cap, &common.contact_cap_hits);
-    common.t_collide_ms = watch.lap_ms();
-
-    // One constraint row per joint direction, contact normal and friction direction.
-    StepProblem problem = extract(world, contacts, options_.extract, memory);
-    common.t_extract_ms = watch.lap_ms();
-
-    // Converged bounds are found by solving, with ODE's own solvers too.
-    context_ = {&world,
-                contacts,
-                options_.extract.erp,
-                options_.extract.cfm,
-                known_positions(world),
-                world.body_groups()};
-    watch.lap_ms();
-    set_friction(problem, advancing, step);
-    common.t_predict_ms = watch.lap_ms();
-    common.ode_messages = world.take_message_count();
+    const StepProblem problem = pose_problem(world, memory, advancing, common);
 
     // Every combination splits the bodies and solves the same problem.
     Measured measured;
     if (is_measured(step)) {
       set_problem_columns(problem, common);
-      common.max_penetration_m = deepest_m(contacts);
+      common.max_penetration_m = deepest_m(contacts_);
       measured = measure(combinations, problem, common);
     } else if (options_.session) {
       for (Combination& combination : combinations) combination.solve(problem, step);
@@ -88,19 +67,52 @@ void Simulation::run_world(std::span<Combination> combinations, Combination& adv
     if (observe_) observe_({context_, problem, step, measured.rows, measured.outcomes});
     if (advance.can_advance()) {
       world.advance(advance.verdict.velocity, options_.extract.h_s);
-      memory.remember(contacts, problem, advance.solution.impulse);
+      memory.remember(contacts_, problem, advance.solution.impulse);
     }
 
     finish_rows(measured, world, advance);
     record(measured.rows, write);
-    if (!measured.rows.empty()) ++summary_.measured_steps;
-    if (!measured.rows.empty() && common.contacts > 0) ++summary_.measured_with_contacts;
-    ++summary_.steps;
-    if (advance.status != SolveStatus::ok) ++summary_.inexact_advances;
+    count_step(measured, advance);
     progress(summary_.steps, total_steps());
     if (!advance.can_advance() || !is_finite(world))
       return record_skipped(combinations, step + 1, why_stopped(step, advance), write);
   }
+}
+
+// What the world asks of this step; sets the context of the step, and the times and counts of getting there.
+StepProblem Simulation::pose_problem(OdeWorld& world, ContactMemory& memory, Combination& advancing,
+                                     StepRecord& common) {
+  world.before_step(common.step);
+  Stopwatch watch;
+
+  // Where shapes touch.
+  contacts_ = world.collide(options_.contact_cap, &common.contact_cap_hits);
+  common.t_collide_ms = watch.lap_ms();
+
+  // One constraint row per joint direction, contact normal and friction direction.
+  StepProblem problem = extract(world, contacts_, options_.extract, memory);
+  common.t_extract_ms = watch.lap_ms();
+
+  // Converged bounds are found by solving, with ODE's own solvers too.
+  context_ = {&world,
+              contacts_,
+              options_.extract.erp,
+              options_.extract.cfm,
+              known_positions(world),
+              world.body_groups()};
+  watch.lap_ms();
+  set_friction(problem, advancing, common.step);
+  common.t_predict_ms = watch.lap_ms();
+  common.ode_messages = world.take_message_count();
+  return problem;
+}
+
+void Simulation::count_step(const Measured& measured, const Outcome& advance) {
+  ++summary_.steps;
+  if (advance.status != SolveStatus::ok) ++summary_.inexact_advances;
+  if (measured.rows.empty()) return;
+  ++summary_.measured_steps;
+  if (measured.rows.front().contacts > 0) ++summary_.measured_with_contacts;
 }
 
 Simulation::Simulation(const RunOptions& options, const std::atomic<bool>& stop, Observer observe)

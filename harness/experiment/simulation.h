@@ -57,8 +57,11 @@ class Simulation {
   void run_worlds(const RowSink& write, const Progress& progress);
   void run_world(std::span<Combination> combinations, Combination& advancing, const RowSink& write,
                  const Progress& progress);
+  StepProblem pose_problem(OdeWorld& world, ContactMemory& memory, Combination& advancing,
+                           StepRecord& common);
   void set_friction(StepProblem& problem, Combination& advancing, int step);
   Measured measure(std::span<Combination> combinations, const StepProblem& problem, const StepRecord& common);
+  void count_step(const Measured& measured, const Outcome& advance);
   void finish_rows(Measured& measured, const OdeWorld& world, const Outcome& advance);
   void record(std::span<const StepRecord> rows, const RowSink& write);
   void record_skipped(std::span<const Combination> combinations, int first_step, const std::string& reason,
@@ -71,8 +74,9 @@ class Simulation {
   RunOptions options_;
   const std::atomic<bool>& stop_;
   Observer observe_;
-  StepContext context_;  // of the step at hand
-  StepRecord run_row_;   // the columns all rows share
+  std::vector<ContactPoint> contacts_;  // of the step at hand, as is
+  StepContext context_;
+  StepRecord run_row_;  // the columns all rows share
   std::vector<Combination> combinations_;
   RunSummary summary_;
 };
