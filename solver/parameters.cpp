@@ -23,7 +23,7 @@ const Parameter& predictor_sweeps() {
   static const Parameter parameter{
       .name = "predictor-sweeps",
       .kind = Kind::integer,
-      .default_value = "80",
+      .default_value = "60",
       .range = {0, kInfinity},
       .help =
           "most Gauss-Seidel sweeps that the strategy pivot starts from; fewer where "

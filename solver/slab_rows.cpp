@@ -39,10 +39,10 @@ inline void transpose(__m256* v) {
   for (int i = 0; i < 8; ++i) _mm256_store_ps(bodies[places[i]].velocity, v[i]);
 }
 
-// kept lambda + push - J v / d, in four sums that do not wait for each other.
-inline __m256 free_impulse(const OctetRow& row, const __m256* u) {
+// kept lambda + rest - J v / d, in four sums that do not wait for each other.
+inline __m256 free_impulse(const OctetRow& row, __m256 impulse, const __m256* u) {
   __m256 sum[4];
-  sum[0] = _mm256_fmadd_ps(_mm256_load_ps(row.impulse), _mm256_load_ps(row.kept), _mm256_load_ps(row.push));
+  sum[0] = _mm256_fmadd_ps(impulse, _mm256_load_ps(row.kept), _mm256_load_ps(row.rest));
   sum[0] = _mm256_fnmadd_ps(_mm256_load_ps(row.jacobian[0]), u[0], sum[0]);
 #pragma GCC unroll 3
   for (int i = 1; i < 4; ++i) sum[i] = _mm256_mul_ps(_mm256_load_ps(row.jacobian[i]), u[i]);
@@ -56,26 +56,42 @@ inline __m256 free_impulse(const OctetRow& row, const __m256* u) {
   return _mm256_sub_ps(_mm256_sub_ps(sum[0], sum[1]), _mm256_add_ps(sum[2], sum[3]));
 }
 
-inline void visit_row(OctetRow& row, __m256* u) {
-  const __m256 next = _mm256_min_ps(_mm256_max_ps(free_impulse(row, u), _mm256_load_ps(row.lower)),
+// Adds to agreement.
+inline void visit_row(OctetRow& row, __m256 share, __m256* u, __m256& agreement) {
+  const __m256 before = _mm256_load_ps(row.impulse);
+  const __m256 start = _mm256_fmadd_ps(share, _mm256_load_ps(row.change), before);
+  const __m256 next = _mm256_min_ps(_mm256_max_ps(free_impulse(row, start, u), _mm256_load_ps(row.lower)),
                                     _mm256_load_ps(row.upper));
-  const __m256 change = _mm256_sub_ps(next, _mm256_load_ps(row.impulse));
+  const __m256 step = _mm256_sub_ps(next, start), change = _mm256_sub_ps(next, before);
   _mm256_store_ps(row.impulse, next);
+  _mm256_store_ps(row.change, change);
+  agreement = _mm256_fmadd_ps(step, change, agreement);
 #pragma GCC unroll 12
-  for (int c = 0; c < 12; ++c) u[c] = _mm256_fmadd_ps(_mm256_load_ps(row.mass_jacobian[c]), change, u[c]);
+  for (int c = 0; c < 12; ++c) u[c] = _mm256_fmadd_ps(_mm256_load_ps(row.mass_jacobian[c]), step, u[c]);
 }
 
 }  // namespace
 
-void visit_octet(const Octet& octet, OctetRow* rows, SlabBody* bodies) {
+void push_body(float share, SlabBody& body) {
+  const __m256 end = _mm256_load_ps(body.velocity);
+  const __m256 change = _mm256_sub_ps(end, _mm256_load_ps(body.end));
+  _mm256_store_ps(body.end, end);
+  _mm256_store_ps(body.velocity, _mm256_fmadd_ps(_mm256_set1_ps(share), change, end));
+}
+
+void visit_octet(const Octet& octet, float share, OctetRow* rows, SlabBody* bodies,
+                 float (&agreement)[kOctetLanes]) {
   __m256 velocities[12];
   load(bodies, octet.body_a, velocities);
   load(bodies, octet.body_b, velocities + 6);
   __m256 u[12];
 #pragma GCC unroll 12
   for (int c = 0; c < 12; ++c) u[c] = velocities[c];
+  const __m256 shares = _mm256_set1_ps(share);
+  __m256 sum = _mm256_loadu_ps(agreement);
   for (OctetRow *row = rows + octet.first_row, *end = row + octet.row_count; row != end; ++row)
-    visit_row(*row, u);
+    visit_row(*row, shares, u, sum);
+  _mm256_storeu_ps(agreement, sum);
 #pragma GCC unroll 12
   for (int c = 0; c < 12; ++c) velocities[c] = u[c];
   store(bodies, octet.body_a, velocities);

@@ -6,14 +6,15 @@ namespace cleave {
 
 inline constexpr int kOctetLanes = 8;
 
-// The k-th row of each of eight groups; lambda_r - w_r / d = kept lambda_r + push - (J_r / d) v with d = d_r / omega.
+// The k-th row of each of eight groups; lambda_r - w_r / d = kept lambda_r + rest - (J_r / d) v with d = d_r.
 // Nothing moves in the lane of a group that has no k-th row.
 struct alignas(64) OctetRow {
   float jacobian[12][kOctetLanes] = {};       // J_r / d, six numbers of body a and six of b
   float mass_jacobian[12][kOctetLanes] = {};  // M^-1 J_r^T
-  float kept[kOctetLanes] = {}, push[kOctetLanes] = {};
+  float kept[kOctetLanes] = {}, rest[kOctetLanes] = {};
   float lower[kOctetLanes] = {}, upper[kOctetLanes] = {};
   float impulse[kOctetLanes] = {};
+  float change[kOctetLanes] = {};      // lambda_k - lambda_k-1 (sweep_momentum.h)
   signed char side[kOctetLanes] = {};  // at its lower bound, free, at its upper one
 };
 
@@ -26,9 +27,15 @@ struct Octet {
 // In a cache line of its own: its neighbours may be those of another thread.
 struct alignas(64) SlabBody {
   float velocity[kOctetLanes] = {};  // and two zeros
+  float end[kOctetLanes] = {};       // the velocity at the end of the last sweep
 };
 
-// Visits every row of these groups once, in their order.
-void visit_octet(const Octet& octet, OctetRow* rows, SlabBody* bodies);
+// To where a sweep begins; share: beta (sweep_momentum.h).
+void push_body(float share, SlabBody& body);
+
+// Visits every row of these groups once, in their order, from where its impulse begins. Adds (lambda_k+1 - y_k) d_k+1 of its rows
+// to agreement, lane by lane.
+void visit_octet(const Octet& octet, float share, OctetRow* rows, SlabBody* bodies,
+                 float (&agreement)[kOctetLanes]);
 
 }  // namespace cleave

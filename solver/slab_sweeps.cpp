@@ -47,6 +47,7 @@ void SlabSweeps::sort_groups(const PreparedStep& step) {
   place_of_group_.resize(groups);
   octet_count_.resize(sets);
   row_first_.resize(sets + 1);
+  agreement_.resize(sets);
   changed_.resize(sets);
 }
 
@@ -89,10 +90,12 @@ void SlabSweeps::assign_places(const PreparedStep& step) {
   row_first_[0] = 0;
   std::partial_sum(row_first_.begin(), row_first_.end(), row_first_.begin());
   rows_.resize(row_first_.back());
+  sides_.resize(row_first_.back());
 }
 
 void SlabSweeps::pack_rows(const PreparedStep& step, int set) {
   std::fill(rows_.begin() + row_first_[set], rows_.begin() + row_first_[set + 1], OctetRow{});
+  std::fill(sides_.begin() + row_first_[set], sides_.begin() + row_first_[set + 1], RowSides{});
   for (Octet& octet : octets_of(set)) {
     octet.first_row += row_first_[set];
     for (int* body : {octet.body_a, octet.body_b}) {
@@ -113,13 +116,13 @@ void SlabSweeps::pack_group(const PreparedStep& step, int g) {
   for (int k = 0; k < group.row_count; ++k) {
     const int r = group.first_row + k;
     OctetRow& row = rows_[place_of_group_[g] / kOctetLanes + k];
-    const double inverse = kOverRelaxation / step.diagonal()[r];
+    const double inverse = 1 / step.diagonal()[r];
     for (int c = 0; c < numbers; ++c) {
       row.jacobian[c][lane] = static_cast<float>(p.jacobian[12L * r + c] * inverse);
       row.mass_jacobian[c][lane] = static_cast<float>(step.mass_jacobian()[12L * r + c]);
     }
     row.kept[lane] = static_cast<float>(1 - p.compliance[r] * inverse);
-    row.push[lane] = static_cast<float>(p.rhs[r] * inverse);
+    row.rest[lane] = static_cast<float>(p.rhs[r] * inverse);
     row.lower[lane] = to_float(p.lower[r]);
     row.upper[lane] = to_float(p.upper[r]);
   }
@@ -141,18 +144,21 @@ void SlabSweeps::take_in(std::span<const double> impulse, std::span<const double
   const auto take_body = [&](int body) {
     SlabBody& own = bodies_[place_of_body_[body]];
     own = {};
-    for (int c = 0; c < 6; ++c) own.velocity[c] = static_cast<float>(v[6 * body + c]);
+    for (int c = 0; c < 6; ++c) own.velocity[c] = own.end[c] = static_cast<float>(v[6 * body + c]);
   };
   const auto take_group = [&](int g) {
     const RowGroup& group = step_->groups()[g];
     const int lane = place_of_group_[g] % kOctetLanes;
     for (int k = 0; k < group.row_count; ++k) {
-      OctetRow& row = rows_[place_of_group_[g] / kOctetLanes + k];
+      const int at = place_of_group_[g] / kOctetLanes + k;
+      OctetRow& row = rows_[at];
       row.impulse[lane] = static_cast<float>(impulse[group.first_row + k]);
-      row.side[lane] = side_of(row.impulse[lane], row.lower[lane], row.upper[lane]);
+      row.change[lane] = 0;
+      sides_[at][lane] = side_of(row.impulse[lane], row.lower[lane], row.upper[lane]);
     }
   };
   run_over_chunks(tasks, take_body, take_group);
+  momentum_ = SweepMomentum(step_->least_relative_compliance());
 }
 
 // What is at a bound there is at the bound here, to the last digit.
@@ -181,25 +187,41 @@ void SlabSweeps::give_out(std::span<double> impulse, std::span<double> v, Parall
 int SlabSweeps::update_sides(int set) {
   int changed = 0;
   for (int r = row_first_[set]; r < row_first_[set + 1]; ++r) {
-    OctetRow& row = rows_[r];
+    const OctetRow& row = rows_[r];
     for (int lane = 0; lane < kOctetLanes; ++lane) {
       const signed char side = side_of(row.impulse[lane], row.lower[lane], row.upper[lane]);
-      changed += side != row.side[lane];
-      row.side[lane] = side;
+      changed += side != sides_[r][lane];
+      sides_[r][lane] = side;
     }
   }
   return changed;
 }
 
+// Bodies of a slab are pushed by its inside, which comes before the gaps that share them.
+void SlabSweeps::visit(int set) {
+  const float share = momentum_.share();
+  if (set < slabs_.count())
+    for (int body = slab_first_[set]; body < slab_first_[set + 1]; ++body) push_body(share, bodies_[body]);
+  float agreement[kOctetLanes] = {};
+  for (const Octet& octet : octets_of(set))
+    visit_octet(octet, share, rows_.data(), bodies_.data(), agreement);
+  agreement_[set] = std::accumulate(agreement, agreement + kOctetLanes, 0.0);
+}
+
+void SlabSweeps::end_sweep() {
+  momentum_.end_sweep(std::accumulate(agreement_.begin(), agreement_.end(), 0.0));
+}
+
 int SlabSweeps::run(int sweeps, ParallelTasks& tasks, const std::function<void()>& beside) {
   assert(sweeps > 0 && sweeps <= kMostSweeps);
-  const int sets = slabs_.set_count();
+  const int sets = slabs_.set_count(), tasks_of_sweep = slabs_.tasks_of_sweep();
   tasks.run(Stage::predict, slabs_.graph(), [&](int task) {
-    if (task == kMostSweeps * sets) return beside();
-    const int sweep = task / sets, set = task % sets;
+    if (task == kMostSweeps * tasks_of_sweep) return beside();
+    const int sweep = task / tasks_of_sweep, set = task % tasks_of_sweep;
     if (sweep >= sweeps) return;
+    if (set == sets) return end_sweep();
     check_stop(tasks.stop());
-    for (const Octet& octet : octets_of(set)) visit_octet(octet, rows_.data(), bodies_.data());
+    visit(set);
     if (sweep == sweeps - 1) changed_[set] = update_sides(set);
   });
   return std::accumulate(changed_.begin(), changed_.end(), 0);

@@ -1,8 +1,9 @@
 // Projected Gauss-Seidel sweeps for several threads: the predictor of the strategy `pivot`. One row is
 //
-//     w_r = J_r v + C_r lambda_r - b_r,   lambda_r <- clamp(lambda_r - omega w_r / d_r, lo_r, hi_r),   v += M^-1 J_r^T dlambda
+//     w_r = J_r v + C_r lambda_r - b_r,   lambda_r <- clamp(lambda_r - w_r / d_r, lo_r, hi_r),   v += M^-1 J_r^T dlambda
 //
-// as in gauss_seidel.h, where rows come in their natural order and omega is 1 (over-relaxation: Cryer 1971). Here bodies are
+// as in gauss_seidel.h, where rows come in their natural order, from one sweep to the next with momentum (sweep_momentum.h).
+// Bodies are
 // cut into slabs (slabs.h), and the rows of an inside or a gap are one task of a sweep. A task visits its groups of rows
 // (those between two bodies) in octets: up to eight groups of about as many rows, of which no two share a dynamic body,
 // in the lanes of a vector. Order and bytes depend on the problem alone, not on the number of threads. Numbers are of
@@ -10,6 +11,7 @@
 // exactly afterwards.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <span>
 #include <vector>
@@ -18,15 +20,13 @@
 #include "solver/prepared_step.h"
 #include "solver/slab_rows.h"
 #include "solver/slabs.h"
+#include "solver/sweep_momentum.h"
 
 namespace cleave {
 
 class SlabSweeps {
  public:
   static constexpr int kMostSweeps = 5;  // of one run
-  // Factorisations that follow the sweeps of `pivot`, and sweeps: with 1.2 a tenth fewer and a twentieth more than with 1, on
-  // runs of piles, towers and chains; a silo takes some more of both. 1.1 and 1.3 gain about as much.
-  static constexpr double kOverRelaxation = 1.2;
 
   // Of a problem without turned boxes, which must stay as it is for run().
   void bind(const PreparedStep& step, ParallelTasks& tasks);
@@ -54,12 +54,17 @@ class SlabSweeps {
   void assign_places(const PreparedStep& step);
   void pack_rows(const PreparedStep& step, int set);
   void pack_group(const PreparedStep& step, int group);
+  void visit(int set);
+  void end_sweep();
   int update_sides(int set);
   std::span<Octet> octets_of(int set) {
     return std::span(octets_).subspan(group_first_[set], octet_count_[set]);
   }
   template <class ForBody, class ForGroup>
   void run_over_chunks(ParallelTasks& tasks, const ForBody& for_body, const ForGroup& for_group) const;
+
+  // Of every lane of an octet's row: at its lower bound, free, at its upper one. Looked at after a run alone.
+  using RowSides = std::array<signed char, kOctetLanes>;
 
   const PreparedStep* step_ = nullptr;
   Slabs slabs_;
@@ -71,8 +76,11 @@ class SlabSweeps {
   std::vector<int> place_of_group_;  // 8 octet row + lane of its first row
   std::vector<int> place_of_body_;
   std::vector<OctetRow> rows_;    // by set and octet
+  std::vector<RowSides> sides_;   // of rows_
   std::vector<SlabBody> bodies_;  // by place: those of a slab side by side, then one a set that stands still
-  std::vector<int> changed_;      // by set, in the last run
+  SweepMomentum momentum_;
+  std::vector<double> agreement_;                 // by set, of the last sweep (sweep_momentum.h)
+  std::vector<int> changed_;                      // by set, in the last run
   std::vector<int> slab_first_, bodies_by_slab_;  // scratch
 };
 

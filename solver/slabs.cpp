@@ -86,28 +86,26 @@ void Slabs::wait_for_neighbours(int begin, int gap) {
   }
 }
 
-// An inside waits for the gaps around it of the sweep before.
+// The end of a sweep waits for all sets, and the insides of the next one for it.
 void Slabs::build_graph(int sweeps) {
-  const int slabs = count_, gaps = slabs - 1, tasks = slabs + gaps;
+  const int gaps = count_ - 1;
   waits_.clear();
-  places_.resize(sweeps * tasks);
+  places_.resize(sweeps * tasks_of_sweep());
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    const int begin = sweep * tasks, before = begin - tasks;
-    for (int slab = 0; slab < slabs; ++slab) {
-      places_[begin + slab] = (slab + 0.5) / slabs;
-      if (sweep == 0) continue;
-      for (const int gap : {slab - 1, slab}) {
-        if (gap >= 0 && gap < gaps) waits_.emplace_back(before + set_of_gap(gap), begin + slab);
-      }
-      if (gaps == 0) waits_.emplace_back(before, begin);
+    const int begin = sweep * tasks_of_sweep(), end = begin + set_count();
+    for (int slab = 0; slab < count_; ++slab) {
+      places_[begin + slab] = (slab + 0.5) / count_;
+      if (sweep > 0) waits_.emplace_back(begin - 1, begin + slab);
     }
     for (int gap = 0; gap < gaps; ++gap) {
-      places_[begin + set_of_gap(gap)] = (gap + 0.75) / slabs;
+      places_[begin + set_of_gap(gap)] = (gap + 0.75) / count_;
       wait_for_neighbours(begin, gap);
     }
+    for (int task = begin; task < end; ++task) waits_.emplace_back(task, end);
+    places_[end] = 0;
   }
   places_.push_back(kLastPlace);
-  graph_.build(sweeps * tasks + 1, waits_, places_);
+  graph_.build(sweeps * tasks_of_sweep() + 1, waits_, places_);
 }
 
 }  // namespace cleave

@@ -3,8 +3,8 @@
 //
 //     the insides of all slabs;   the gaps between slabs 0|1, 2|3, ...;   the gaps 1|2, 3|4, ...
 //
-// Each inside or gap, a set of groups of rows, waits for those that share bodies with it alone: slabs at one end may be a
-// sweep ahead of the other.
+// Each inside or gap, a set of groups of rows, waits within a sweep for those that share bodies with it alone. A sweep begins where
+// that before it has ended.
 #pragma once
 
 #include <span>
@@ -18,13 +18,15 @@ namespace cleave {
 
 class Slabs {
  public:
-  // Cuts the bodies, and makes the graph of so many sweeps: task sweep * set_count() + set, and one more that waits for none.
+  // Cuts the bodies, and makes the graph of so many sweeps: tasks sweep * tasks_of_sweep() + set, the last of a sweep being its
+  // end; and one more that waits for none.
   void cut(const PreparedStep& step, int sweeps);
 
   int count() const { return count_; }
   std::span<const int> of_body() const { return slab_of_body_; }
   // Sets of groups: insides 0 .. count() - 1, then gaps behind even slabs, then those behind odd ones.
   int set_count() const { return 2 * count_ - 1; }
+  int tasks_of_sweep() const { return set_count() + 1; }
   int set_of(const RowGroup& group) const;
   const TaskGraph& graph() const { return graph_; }
 

@@ -6,8 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
+#include "solver/registry.h"
+#include "solver/residual.h"
 #include "tests/solver/problem_makers.h"
 
 namespace cleave {
@@ -130,8 +133,7 @@ void slow_group(Sweeps& s, const RowGroup& group) {
     double w = p.compliance[r] * s.impulse[r] - p.rhs[r];
     for (int side = 0; side < (group.body_b < 0 ? 1 : 2); ++side)
       for (int c = 0; c < 6; ++c) w += p.jacobian[12 * r + 6 * side + c] * velocity(r, side)[c];
-    const double whole = SlabSweeps::kOverRelaxation * w / s.step.diagonal()[r];
-    const double next = std::clamp(s.impulse[r] - whole, p.lower[r], p.upper[r]);
+    const double next = std::clamp(s.impulse[r] - w / s.step.diagonal()[r], p.lower[r], p.upper[r]);
     for (int side = 0; side < (group.body_b < 0 ? 1 : 2); ++side)
       for (int c = 0; c < 6; ++c)
         velocity(r, side)[c] += s.step.mass_jacobian()[12 * r + 6 * side + c] * (next - s.impulse[r]);
@@ -144,17 +146,106 @@ void slow_sweep(Sweeps& s) {
     for (const int g : octet) slow_group(s, s.step.groups()[g]);
 }
 
-TEST(SlabSweepsTest, AreThoseOfASlowSweepInTheSameOrder) {
-  for (const int columns : {1, 9, 30}) {
-    const StepProblem problem = problem_of(columns);
+double agreement(const std::vector<double>& next, const std::vector<double>& start,
+                 const std::vector<double>& before) {
+  double sum = 0;
+  for (std::size_t i = 0; i < next.size(); ++i) sum += (next[i] - start[i]) * (next[i] - before[i]);
+  return sum;
+}
+
+// x <- x + beta (x - before), before <- x
+void slow_push(double beta, std::vector<double>& x, std::vector<double>& before) {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double now = x[i];
+    x[i] += beta * (now - before[i]);
+    before[i] = now;
+  }
+}
+
+// From the equations of sweep_momentum.h. Returns how often momentum began anew.
+int slow_sweeps(Sweeps& s, int count) {
+  std::vector<double> impulse = s.impulse, velocity = s.velocity;
+  const double root = std::sqrt(std::min(1.0, s.step.least_relative_compliance()));
+  const double most = std::min(0.8, (1 - root) / (1 + root));
+  double t = 1;
+  int restarts = 0;
+  for (int sweep = 0; sweep < count; ++sweep) {
+    const std::vector<double> start = s.impulse;
+    slow_sweep(s);
+    if (sweep == count - 1) break;
+    const double next_t = (1 + std::sqrt(1 + 4 * t * t)) / 2;
+    const bool goes_back = agreement(s.impulse, start, impulse) < 0;
+    const double beta = goes_back ? 0 : std::min((t - 1) / next_t, most);
+    t = goes_back ? 1 : next_t;
+    restarts += goes_back;
+    slow_push(beta, s.impulse, impulse);
+    slow_push(beta, s.velocity, velocity);
+  }
+  return restarts;
+}
+
+TEST(SlabSweepsTest, AreThoseOfSlowSweepsInTheSameOrder) {
+  int restarts = 0;
+  for (const StepProblem& problem : {problem_of(1), problem_of(9), problem_of(30), make_star(4)}) {
     Sweeps fast(problem), slow(problem);
-    fast.run(3);
-    for (int sweep = 0; sweep < 3; ++sweep) slow_sweep(slow);
+    fast.sweeps.take_in(fast.impulse, fast.velocity, fast.tasks);
+    for (const int count : {5, 3, 5, 5}) fast.sweeps.run(count, fast.tasks);
+    fast.sweeps.give_out(fast.impulse, fast.velocity, fast.tasks);
+    restarts += slow_sweeps(slow, 18);
     const double scale = *std::ranges::max_element(slow.impulse) + 1;
     for (std::size_t r = 0; r < fast.impulse.size(); ++r)
-      ASSERT_NEAR(fast.impulse[r], slow.impulse[r], 1e-4 * scale) << columns << " columns, row " << r;
+      ASSERT_NEAR(fast.impulse[r], slow.impulse[r], 1e-4 * scale)
+          << problem.row_count() << " rows, row " << r;
     for (std::size_t c = 0; c < fast.velocity.size(); ++c)
-      ASSERT_NEAR(fast.velocity[c], slow.velocity[c], 1e-4) << columns << " columns";
+      ASSERT_NEAR(fast.velocity[c], slow.velocity[c], 1e-4) << problem.row_count() << " rows";
+  }
+  EXPECT_GT(restarts, 0);
+}
+
+double squared_distance(const std::vector<double>& a, const std::vector<double>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+TEST(SlabSweepsTest, ComeNearerThanSweepsWithoutMomentum) {
+  const StepProblem problem = problem_of(9);
+  Solution exact;
+  ASSERT_EQ(make_step_solver("exact")->solve(problem, {}, exact).status, SolveStatus::ok);
+  Sweeps with(problem), without(problem);
+  with.sweeps.take_in(with.impulse, with.velocity, with.tasks);
+  for (int run = 0; run < 12; ++run) with.sweeps.run(5, with.tasks);
+  with.sweeps.give_out(with.impulse, with.velocity, with.tasks);
+  for (int sweep = 0; sweep < 60; ++sweep) slow_sweep(without);
+  const std::vector<double> velocity = judge(problem, exact.impulse).velocity;
+  EXPECT_LT(squared_distance(with.velocity, velocity), 0.3 * squared_distance(without.velocity, velocity));
+}
+
+float share_after(int sweeps, SweepMomentum momentum) {
+  for (int sweep = 0; sweep < sweeps; ++sweep) momentum.end_sweep(1);
+  return momentum.share();
+}
+
+TEST(SweepMomentumTest, GrowsToItsBound) {
+  const SweepMomentum stiff(1e-6);
+  EXPECT_EQ(share_after(0, stiff), 0);
+  EXPECT_EQ(share_after(1, stiff), 0);  // of one sweep there is no change to go on with
+  for (int sweeps = 1; sweeps < 20; ++sweeps)
+    EXPECT_LE(share_after(sweeps, stiff), share_after(sweeps + 1, stiff));
+  EXPECT_FLOAT_EQ(share_after(20, stiff), 0.8F);
+  EXPECT_FLOAT_EQ(share_after(20, SweepMomentum(0.25)), 1.0F / 3);
+  for (const double soft : {1.0, 2.0, std::numeric_limits<double>::infinity()})
+    EXPECT_EQ(share_after(20, SweepMomentum(soft)), 0) << soft;
+}
+
+TEST(SweepMomentumTest, BeginsAnewWhereASweepGoesBack) {
+  for (const double back : {-1e-30, std::numeric_limits<double>::quiet_NaN()}) {
+    SweepMomentum momentum(1e-6);
+    for (int sweep = 0; sweep < 5; ++sweep) momentum.end_sweep(1);
+    EXPECT_GT(momentum.share(), 0);
+    momentum.end_sweep(back);
+    EXPECT_EQ(momentum.share(), 0) << back;
+    EXPECT_EQ(share_after(7, momentum), share_after(7, SweepMomentum(1e-6))) << back;
   }
 }
 
