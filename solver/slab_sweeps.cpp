@@ -208,23 +208,28 @@ void SlabSweeps::visit(int set) {
   agreement_[set] = std::accumulate(agreement, agreement + kOctetLanes, 0.0);
 }
 
-void SlabSweeps::end_sweep() {
+void SlabSweeps::end_sweep(bool looks, int settled_rows) {
   momentum_.end_sweep(std::accumulate(agreement_.begin(), agreement_.end(), 0.0));
+  if (!looks) return;
+  changed_rows_ = std::accumulate(changed_.begin(), changed_.end(), 0);
+  is_settled_ = changed_rows_ <= settled_rows;
 }
 
-int SlabSweeps::run(int sweeps, ParallelTasks& tasks, const std::function<void()>& beside) {
+int SlabSweeps::run(int sweeps, int settled_rows, ParallelTasks& tasks, const std::function<void()>& beside) {
   assert(sweeps > 0 && sweeps <= kMostSweeps);
   const int sets = slabs_.set_count(), tasks_of_sweep = slabs_.tasks_of_sweep();
+  is_settled_ = false;
   tasks.run(Stage::predict, slabs_.graph(), [&](int task) {
     if (task == kMostSweeps * tasks_of_sweep) return beside();
     const int sweep = task / tasks_of_sweep, set = task % tasks_of_sweep;
-    if (sweep >= sweeps) return;
-    if (set == sets) return end_sweep();
+    if (sweep >= sweeps || is_settled_) return;
+    const bool looks = (sweep + 1) % kSweepsOfALook == 0 || sweep == sweeps - 1;
+    if (set == sets) return end_sweep(looks, settled_rows);
     check_stop(tasks.stop());
     visit(set);
-    if (sweep == sweeps - 1) changed_[set] = update_sides(set);
+    if (looks) changed_[set] = update_sides(set);
   });
-  return std::accumulate(changed_.begin(), changed_.end(), 0);
+  return changed_rows_;
 }
 
 // Rows of an octet stay together, so its place tells it.

@@ -26,17 +26,19 @@ namespace cleave {
 
 class SlabSweeps {
  public:
-  static constexpr int kMostSweeps = 5;  // of one run
+  static constexpr int kMostSweeps = 60;  // of one run, beside which the kernel is analysed
+  static constexpr int kSweepsOfALook = 5;
 
   // Of a problem without turned boxes, which must stay as it is for run().
   void bind(const PreparedStep& step, ParallelTasks& tasks);
 
   // What run() goes on from: impulse (m) and v = v0 + M^-1 J^T impulse (n, 6).
   void take_in(std::span<const double> impulse, std::span<const double> v, ParallelTasks& tasks);
-  // Sweeps, at most kMostSweeps. Returns how many rows have come to or left a bound since the run before, or take_in().
-  // beside: one more task, for work that has nothing to do with the sweeps. Ends with SolveStopped where tasks say so.
+  // Sweeps, at most kMostSweeps. After every kSweepsOfALook of them, and after the last, rows that have come to or left a bound since
+  // the look before, or take_in(), are counted; no more than settled_rows, and the run ends. Returns the last count. beside: one
+  // more task, for work that has nothing to do with the sweeps. Ends with SolveStopped where tasks say so.
   int run(
-      int sweeps, ParallelTasks& tasks, const std::function<void()>& beside = [] {});
+      int sweeps, int settled_rows, ParallelTasks& tasks, const std::function<void()>& beside = [] {});
   // Impulses, those at a bound exactly there, and v to single precision.
   void give_out(std::span<double> impulse, std::span<double> v, ParallelTasks& tasks) const;
 
@@ -55,7 +57,7 @@ class SlabSweeps {
   void pack_rows(const PreparedStep& step, int set);
   void pack_group(const PreparedStep& step, int group);
   void visit(int set);
-  void end_sweep();
+  void end_sweep(bool looks, int settled_rows);
   int update_sides(int set);
   std::span<Octet> octets_of(int set) {
     return std::span(octets_).subspan(group_first_[set], octet_count_[set]);
@@ -79,8 +81,10 @@ class SlabSweeps {
   std::vector<RowSides> sides_;   // of rows_
   std::vector<SlabBody> bodies_;  // by place: those of a slab side by side, then one a set that stands still
   SweepMomentum momentum_;
-  std::vector<double> agreement_;                 // by set, of the last sweep (sweep_momentum.h)
-  std::vector<int> changed_;                      // by set, in the last run
+  std::vector<double> agreement_;  // by set, of the last sweep (sweep_momentum.h)
+  std::vector<int> changed_;       // by set, at the last look
+  int changed_rows_ = 0;           // of all
+  bool is_settled_ = false;
   std::vector<int> slab_first_, bodies_by_slab_;  // scratch
 };
 

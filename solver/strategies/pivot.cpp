@@ -18,7 +18,7 @@ namespace cleave {
 namespace {
 
 constexpr int kRestartSweeps = 30;
-// Enough sweeps to start from, options.predictor_sweeps at most, where five of them move no more than this share of the rows to or
+// Enough sweeps to start from, options.predictor_sweeps at most, where five of them (SlabSweeps::kSweepsOfALook) move no more than this share of the rows to or
 // from a bound. Five cost about a tenth of a factorisation with what goes with it. Twelve recorded steps of a pile of 200 boxes
 // (cfm 1e-5) take 84 factorisations from a cold start after 10 sweeps each, 41 after 40, 33 after 60 and after 80.
 constexpr double kSettledShare = 0.003;
@@ -30,9 +30,7 @@ constexpr double kProgress = 0.75;
 constexpr int kRestarts = 2, kRestartsOfFew = 3, kSingleFlips = 6;
 constexpr int kFewViolations = 12;
 
-bool is_settled(int changed, std::size_t rows) {
-  return changed <= kSettledShare * static_cast<double>(rows);
-}
+int settled_rows(std::size_t rows) { return static_cast<int>(kSettledShare * static_cast<double>(rows)); }
 
 int count_changes(const std::vector<RowState>& before, const std::vector<RowState>& after) {
   int changed = 0;
@@ -90,14 +88,14 @@ class Pivot : public Strategy {
   static bool starts_settled(SolveState& state, double tolerance) {
     StageTimer timer(state.tasks.clock(), Stage::predict);
     const std::size_t rows = state.impulse.size();
-    return (state.options.session && is_settled(state.last_changed_rows, rows)) ||
-           is_settled(state.find_violations(tolerance, SolveState::Violated::after_a_step), rows);
+    return (state.options.session && state.last_changed_rows <= settled_rows(rows)) ||
+           state.find_violations(tolerance, SolveState::Violated::after_a_step) <= settled_rows(rows);
   }
 
-  // The kernel's analysis is done beside the first sweeps. On one thread it still counts as what it is.
-  int run_predictor(SolveState& state, int sweeps) {
+  // The kernel's analysis is done beside the sweeps. On one thread it still counts as what it is.
+  int run_predictor(SolveState& state, int sweeps, int settled) {
     const bool analyzes = static_cast<bool>(state.analysis);
-    const int changed = predictor_.run(sweeps, state.tasks, [&state] { state.analyze(); });
+    const int changed = predictor_.run(sweeps, settled, state.tasks, [&state] { state.analyze(); });
     if (analyzes && state.tasks.threads() == 1)
       state.tasks.clock().move(Stage::predict, Stage::analyze, state.analysis_ms);
     return changed;
@@ -108,9 +106,9 @@ class Pivot : public Strategy {
     StageTimer timer(state.tasks.clock(), Stage::predict);
     if (!std::exchange(is_bound_, true)) predictor_.bind(*state.step, state.tasks);
     predictor_.take_in(state.impulse, state.velocity, state.tasks);
+    const int settled = settled_rows(state.impulse.size());
     for (int done = 0; done < sweeps; done += SlabSweeps::kMostSweeps) {
-      const int changed = run_predictor(state, std::min(SlabSweeps::kMostSweeps, sweeps - done));
-      if (is_settled(changed, state.impulse.size())) break;
+      if (run_predictor(state, std::min(SlabSweeps::kMostSweeps, sweeps - done), settled) <= settled) break;
     }
     predictor_.give_out(state.impulse, state.velocity, state.tasks);
     state.states_from_impulses();

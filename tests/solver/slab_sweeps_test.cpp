@@ -37,6 +37,8 @@ StepProblem make_star(int rocks) {
   return problem;
 }
 
+constexpr int kNever = -1;  // settled
+
 struct Sweeps {
   explicit Sweeps(const StepProblem& problem, int threads = 1)
       : clock(threads),
@@ -50,7 +52,7 @@ struct Sweeps {
   }
   int run(int count) {
     sweeps.take_in(impulse, velocity, tasks);
-    const int changed = sweeps.run(count, tasks);
+    const int changed = sweeps.run(count, kNever, tasks);
     sweeps.give_out(impulse, velocity, tasks);
     return changed;
   }
@@ -184,21 +186,29 @@ int slow_sweeps(Sweeps& s, int count) {
   return restarts;
 }
 
+// Returns how often momentum began anew.
+int compare_with_slow(const StepProblem& problem, int sweeps, double tolerance) {
+  Sweeps fast(problem), slow(problem);
+  fast.sweeps.take_in(fast.impulse, fast.velocity, fast.tasks);
+  for (int done = 0; done < sweeps; done += 4)
+    fast.sweeps.run(std::min(4, sweeps - done), kNever, fast.tasks);
+  fast.sweeps.give_out(fast.impulse, fast.velocity, fast.tasks);
+  const int restarts = slow_sweeps(slow, sweeps);
+  const double scale = *std::ranges::max_element(slow.impulse) + 1;
+  for (std::size_t r = 0; r < fast.impulse.size(); ++r)
+    EXPECT_NEAR(fast.impulse[r], slow.impulse[r], tolerance * scale) << sweeps << " sweeps, row " << r;
+  for (std::size_t c = 0; c < fast.velocity.size(); ++c)
+    EXPECT_NEAR(fast.velocity[c], slow.velocity[c], tolerance) << sweeps << " sweeps";
+  return restarts;
+}
+
 TEST(SlabSweepsTest, AreThoseOfSlowSweepsInTheSameOrder) {
+  for (const int columns : {1, 9, 30}) compare_with_slow(problem_of(columns), 18, 1e-4);
+}
+
+TEST(SlabSweepsTest, BeginMomentumAnewWhereSlowSweepsDo) {
   int restarts = 0;
-  for (const StepProblem& problem : {problem_of(1), problem_of(9), problem_of(30), make_star(4)}) {
-    Sweeps fast(problem), slow(problem);
-    fast.sweeps.take_in(fast.impulse, fast.velocity, fast.tasks);
-    for (const int count : {5, 3, 5, 5}) fast.sweeps.run(count, fast.tasks);
-    fast.sweeps.give_out(fast.impulse, fast.velocity, fast.tasks);
-    restarts += slow_sweeps(slow, 18);
-    const double scale = *std::ranges::max_element(slow.impulse) + 1;
-    for (std::size_t r = 0; r < fast.impulse.size(); ++r)
-      ASSERT_NEAR(fast.impulse[r], slow.impulse[r], 1e-4 * scale)
-          << problem.row_count() << " rows, row " << r;
-    for (std::size_t c = 0; c < fast.velocity.size(); ++c)
-      ASSERT_NEAR(fast.velocity[c], slow.velocity[c], 1e-4) << problem.row_count() << " rows";
-  }
+  for (int sweeps = 1; sweeps < 20; ++sweeps) restarts += compare_with_slow(make_star(4), sweeps, 1e-5);
   EXPECT_GT(restarts, 0);
 }
 
@@ -214,7 +224,7 @@ TEST(SlabSweepsTest, ComeNearerThanSweepsWithoutMomentum) {
   ASSERT_EQ(make_step_solver("exact")->solve(problem, {}, exact).status, SolveStatus::ok);
   Sweeps with(problem), without(problem);
   with.sweeps.take_in(with.impulse, with.velocity, with.tasks);
-  for (int run = 0; run < 12; ++run) with.sweeps.run(5, with.tasks);
+  for (int run = 0; run < 12; ++run) with.sweeps.run(5, kNever, with.tasks);
   with.sweeps.give_out(with.impulse, with.velocity, with.tasks);
   for (int sweep = 0; sweep < 60; ++sweep) slow_sweep(without);
   const std::vector<double> velocity = judge(problem, exact.impulse).velocity;
@@ -274,12 +284,26 @@ TEST(SlabSweepsTest, CountTheRowsThatChangeSides) {
   EXPECT_GT(most, 50);
 }
 
+TEST(SlabSweepsTest, EndAtTheFirstLookAtWhichTheyHaveSettled) {
+  const StepProblem problem = problem_of(9);
+  Sweeps at_once(problem), in_turns(problem);
+  const auto run = [](Sweeps& s, int sweeps, int settled) { return s.sweeps.run(sweeps, settled, s.tasks); };
+  for (Sweeps* s : {&at_once, &in_turns}) s->sweeps.take_in(s->impulse, s->velocity, s->tasks);
+  std::vector<int> counts;
+  for (int look = 0; look < 3; ++look) counts.push_back(run(in_turns, SlabSweeps::kSweepsOfALook, kNever));
+  ASSERT_GT(std::min(counts[0], counts[1]), counts[2]);
+  EXPECT_EQ(run(at_once, SlabSweeps::kMostSweeps, counts[2]), counts[2]);
+  for (Sweeps* s : {&at_once, &in_turns}) s->sweeps.give_out(s->impulse, s->velocity, s->tasks);
+  EXPECT_EQ(at_once.impulse, in_turns.impulse);
+  EXPECT_EQ(at_once.velocity, in_turns.velocity);
+}
+
 TEST(SlabSweepsTest, GoOnWhereTheRunBeforeEnded) {
   const StepProblem problem = problem_of(9);
   Sweeps at_once(problem), in_turns(problem);
   at_once.run(5);
   in_turns.sweeps.take_in(in_turns.impulse, in_turns.velocity, in_turns.tasks);
-  for (const int count : {2, 1, 2}) in_turns.sweeps.run(count, in_turns.tasks);
+  for (const int count : {2, 1, 2}) in_turns.sweeps.run(count, kNever, in_turns.tasks);
   in_turns.sweeps.give_out(in_turns.impulse, in_turns.velocity, in_turns.tasks);
   EXPECT_EQ(in_turns.impulse, at_once.impulse);
   EXPECT_EQ(in_turns.velocity, at_once.velocity);
