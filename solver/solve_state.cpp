@@ -22,7 +22,7 @@ void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, Solve
   prepared.set().project(impulse);
   velocity.resize(n6);
   slack.resize(m);
-  state.assign(m, RowState::free);
+  row_state.assign(m, RowState::free);
   weight.assign(m, 0.0);
   f_v.assign(n6, 0.0);
   f_r.assign(m, 0.0);
@@ -100,7 +100,7 @@ void SolveState::states_from_impulses() {
   const StepProblem& problem = step->problem();
   run_over_rows([&](int first, int last, int) {
     for (int r = first; r < last; ++r) {
-      state[r] = impulse[r] <= problem.lower[r]   ? RowState::lower
+      row_state[r] = impulse[r] <= problem.lower[r]   ? RowState::lower
                  : impulse[r] >= problem.upper[r] ? RowState::upper
                                                   : RowState::free;
     }
@@ -112,9 +112,9 @@ bool SolveState::factor_free() {
   const auto take_states = [&](int first, int last, int) {
     for (int r = first; r < last; ++r) {
       const double compliance = std::max(problem.compliance[r], kFactoredCompliance * step->diagonal()[r]);
-      weight[r] = state[r] == RowState::free ? 1 / compliance : 0.0;
-      if (state[r] == RowState::lower) impulse[r] = problem.lower[r];
-      if (state[r] == RowState::upper) impulse[r] = problem.upper[r];
+      weight[r] = row_state[r] == RowState::free ? 1 / compliance : 0.0;
+      if (row_state[r] == RowState::lower) impulse[r] = problem.lower[r];
+      if (row_state[r] == RowState::upper) impulse[r] = problem.upper[r];
     }
   };
   update_velocity({std::ref(take_states), {}});
@@ -128,7 +128,7 @@ void SolveState::correct_free(const RowWork& after) {
   };
   const auto add_increment = [this](int first, int last, int) {
     for (int r = first; r < last; ++r) {
-      if (state[r] == RowState::free) impulse[r] += dlambda[r];
+      if (row_state[r] == RowState::free) impulse[r] += dlambda[r];
     }
   };
   solve({turn_slack, {}});
@@ -136,7 +136,7 @@ void SolveState::correct_free(const RowWork& after) {
 }
 
 double SolveState::refine_free(double target, int most_steps, bool count) {
-  const auto size = [this](int r) { return state[r] == RowState::free ? std::abs(slack[r]) : 0.0; };
+  const auto size = [this](int r) { return row_state[r] == RowState::free ? std::abs(slack[r]) : 0.0; };
   const auto find_largest = [&](int first, int last, int chunk) {
     chunk_values[chunk] = greatest_of(first, last, size);
   };
@@ -182,7 +182,7 @@ int SolveState::find_violations(double tolerance, Violated when) {
     const bool out =
         ((lower - impulse[r]) * d + pull > tolerance) | ((impulse[r] - upper) * d - pull > tolerance);
     const bool leaves_lower = slack[r]<-tolerance, leaves_upper = slack[r]> tolerance;
-    const bool is_free = state[r] == RowState::free, is_lower = state[r] == RowState::lower;
+    const bool is_free = row_state[r] == RowState::free, is_lower = row_state[r] == RowState::lower;
     return (lower != upper) &
            ((is_free & out) | (is_lower & leaves_lower) | (!is_free & !is_lower & leaves_upper));
   };
@@ -214,10 +214,10 @@ bool SolveState::settle(double tolerance, const Settling& settling) {
 }
 
 void SolveState::flip(int row) {
-  if (state[row] == RowState::free) {
-    state[row] = impulse[row] < step->problem().lower[row] ? RowState::lower : RowState::upper;
+  if (row_state[row] == RowState::free) {
+    row_state[row] = impulse[row] < step->problem().lower[row] ? RowState::lower : RowState::upper;
   } else {
-    state[row] = RowState::free;
+    row_state[row] = RowState::free;
   }
 }
 

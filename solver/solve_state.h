@@ -140,7 +140,7 @@ struct SolveState {
   SolveSummary* summary = nullptr;
 
   std::vector<double> impulse, velocity, slack;  // (m), (n, 6), (m)
-  std::vector<RowState> state;                   // (m)
+  std::vector<RowState> row_state;               // (m)
   std::vector<double> weight;                    // (m) D of the present factor
   std::vector<WeightBlock> blocks;  // of the present factor: the axes of the set, then one a cone
   std::vector<double> shift;        // (cones) m/s, zero but for Coulomb's law; empty where no cone is

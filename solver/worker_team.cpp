@@ -4,6 +4,7 @@
 #include <omp.h>
 
 #include <algorithm>
+#include <cassert>
 #include <map>
 #include <memory>
 #include <random>
@@ -15,6 +16,12 @@
 #include "solver/thread_making.h"
 
 namespace cleave {
+namespace {
+
+// A stage that a task began would wait for that task.
+thread_local bool is_in_task = false;
+
+}  // namespace
 
 WorkerTeam::WorkerTeam(int threads)
     : threads_(threads), queues_(std::make_unique<Queue[]>(2 * threads)), home_count_(threads) {
@@ -89,11 +96,13 @@ bool WorkerTeam::take_from(Queue& queue) {
   } while (!queue.open.compare_exchange_weak(open, open - 1, std::memory_order_acq_rel));
   const int index = index_of(queue);
   if (!failed_.load(std::memory_order_acquire)) {
+    is_in_task = true;
     try {
       task_(context_, index);
     } catch (...) {
       if (!failed_.exchange(true)) failure_ = std::current_exception();
     }
+    is_in_task = false;
   }
   if (graph_ != nullptr) release_next(index);
   return true;
@@ -152,6 +161,7 @@ void WorkerTeam::finish_stage() {
 
 void WorkerTeam::run(int count, Task task, void* context) {
   if (count <= 0) return;
+  assert(!is_in_task);
   const std::scoped_lock lock(one_caller_);
   graph_ = nullptr;
   begin_stage(count, task, context);
@@ -213,6 +223,7 @@ void WorkerTeam::list_first_tasks() {
 
 void WorkerTeam::run(const TaskGraph& graph, Task task, void* context) {
   if (graph.task_count() == 0) return;
+  assert(!is_in_task);
   const std::scoped_lock lock(one_caller_);
   graph_ = &graph;
   list_first_tasks();

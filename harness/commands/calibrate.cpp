@@ -217,6 +217,7 @@ std::vector<std::pair<std::string, std::string>> about_this(const std::vector<st
 
 int calibrate(const CalibrateOptions& options, const std::vector<std::string>& argv) {
   check_out_file(options.out, options.force);
+  check_not_read(options.out, std::vector<std::filesystem::path>(options.files.begin(), options.files.end()));
   const std::uint64_t seed = parse_seed("--seed", options.seed);
   solve_options(1, options.repeats);  // whether --repeats is a number
   auto about = about_this(argv, options);

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "harness/base/names.h"
+#include "harness/campaign/campaign_index.h"
+#include "harness/files/output_directory.h"
 
 namespace cleave {
 namespace {
@@ -67,9 +69,20 @@ void check_out_file(const std::string& out, bool force) {
   std::error_code ignored;  // a name that cannot be looked at cannot be written either, and that says why
   if (std::filesystem::exists(out, ignored) && !force)
     reject("--out: " + out + " exists; name another file or give --force");
+  // What is written takes the place of what was there, and a device or a link is not to be lost for that.
+  const std::filesystem::file_status there = std::filesystem::symlink_status(out, ignored);
+  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
+    reject("--out: " + out + " is no regular file; name another");
   const std::filesystem::path directory = std::filesystem::path(out).parent_path();
   if (!directory.empty() && !std::filesystem::is_directory(directory, ignored))
     reject("--out: " + out + " cannot be written: there is no directory " + directory.string());
+}
+
+void check_run_directory(const std::string& out, bool force, const std::vector<std::string>& files) {
+  check_output_directory(out, force, files);
+  std::error_code ignored;
+  if (std::filesystem::exists(std::filesystem::path(out) / kIndexFile, ignored))
+    reject("--out: '" + out + "' holds a campaign; name another directory");
 }
 
 void check_not_read(const std::string& out, std::span<const std::filesystem::path> read) {

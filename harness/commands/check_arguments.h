@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace cleave {
 
@@ -14,11 +15,14 @@ namespace cleave {
 void check_arguments(const CLI::App& command, std::span<const std::string> arguments);
 
 // --out of a command that writes one file: throws where it is empty, where there is no such directory, and
-// where a file of that name exists and --force is not given.
+// where a file of that name exists and --force is not given, or anything else that is no regular file.
 void check_out_file(const std::string& out, bool force);
 
 // Throws where the file to write, which may be overwritten, is one of those that are read.
 void check_not_read(const std::string& out, std::span<const std::filesystem::path> read);
+
+// --out of a command that writes the directory of a run: as check_output_directory, and no campaign may be there.
+void check_run_directory(const std::string& out, bool force, const std::vector<std::string>& files);
 
 // After parsing: throws for what `app` could not place, naming the nearest option.
 void reject_extras(const CLI::App& app);

@@ -9,6 +9,7 @@
 #include "harness/base/names.h"
 #include "harness/base/progress.h"
 #include "harness/base/stopwatch.h"
+#include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
 #include "harness/commands/manifested_work.h"
 #include "harness/commands/run_command_line.h"
@@ -222,7 +223,7 @@ int replay(ReplayOptions options, const std::vector<std::string>& argv) {
   check_files(options);
   if (options.write_solutions) check_names(options);
   check_not_taken_away(options);
-  check_output_directory(options.solve.out, options.solve.force, files_written(options));
+  check_run_directory(options.solve.out, options.solve.force, files_written(options));
   print_left_out(options.solve);
   Replay work(options);
   return do_manifested_work(

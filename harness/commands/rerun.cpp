@@ -8,7 +8,6 @@
 #include "harness/commands/command.h"
 #include "harness/commands/repeated_run.h"
 #include "harness/files/manifest.h"
-#include "harness/files/output_directory.h"
 
 namespace cleave {
 namespace {
@@ -25,7 +24,7 @@ int rerun(const RerunOptions& options, const std::string& program) {
   RepeatedRun run{program, options.cell, options.out, {}, options.force};
   if (!options.threads.empty()) run.threads = parse_integer("--threads", options.threads, {1, 1024});
   if (!options.out.empty()) {
-    check_output_directory(options.out, options.force, {kStepsFile});
+    check_run_directory(options.out, options.force, {kStepsFile});
     const fs::path read[] = {fs::path(options.cell) / kStepsFile};
     check_not_read(fs::path(options.out) / kStepsFile, read);
   }

@@ -1,6 +1,9 @@
 #include "harness/commands/run_command_line.h"
 
+#include <algorithm>
+#include <map>
 #include <stdexcept>
+#include <vector>
 
 #include "harness/base/names.h"
 #include "harness/files/manifest_reader.h"
@@ -76,18 +79,29 @@ void declare_parameters(CLI::App& app, Given& given, bool with_world) {
   }
 }
 
+// What a parameter is, and the scenes of which it is that, with their defaults.
+struct SceneHelp {
+  std::string what, scenes;
+};
+
+// Scenes may share a parameter, and what it is of them may differ.
+void add_help(const Parameter& parameter, const std::string& scene, std::vector<SceneHelp>& help) {
+  auto same = std::ranges::find(help, parameter.help, &SceneHelp::what);
+  if (same == help.end()) same = help.insert(help.end(), {parameter.help, ""});
+  same->scenes += "; " + scene + " (" + parameter.default_value + ")";
+}
+
 // One option per parameter name of any scene.
 void declare_scenes(CLI::App& app, Given& given) {
-  std::map<std::string, std::string> help;  // by name: several scenes may share a parameter
-  for (const SceneEntry& scene : scenes()) {
-    for (const Parameter& parameter : scene.parameters) {
-      if (parameter.kind == Parameter::Kind::path) continue;
-      std::string& text = help[parameter.name];
-      if (text.empty()) text = parameter.help;
-      text += std::string("; ") + scene.name + " (" + parameter.default_value + ")";
-    }
+  std::map<std::string, std::vector<SceneHelp>> help;  // by name
+  for (const SceneEntry& scene : scenes())
+    for (const Parameter& parameter : scene.parameters)
+      if (parameter.kind != Parameter::Kind::path) add_help(parameter, scene.name, help[parameter.name]);
+  for (const auto& [name, kinds] : help) {
+    std::vector<std::string> texts;
+    for (const SceneHelp& kind : kinds) texts.push_back(kind.what + kind.scenes);
+    declare(app, given, name, "X", joined(texts, "; or "))->group("Options of scenes");
   }
-  for (const auto& [name, text] : help) declare(app, given, name, "X", text)->group("Options of scenes");
 }
 
 }  // namespace

@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "harness/base/progress.h"
+#include "harness/commands/check_arguments.h"
 #include "harness/commands/manifested_work.h"
 #include "harness/commands/motion_recorder.h"
 #include "harness/experiment/model_watch.h"
 #include "harness/experiment/option_values.h"
 #include "harness/files/csv_recorder.h"
 #include "harness/files/manifest.h"
-#include "harness/files/output_directory.h"
 #include "harness/files/whole_file.h"
 
 namespace cleave {
@@ -27,7 +27,7 @@ void tell_findings(const std::filesystem::path& out, const std::vector<ModelFind
 
 int simulate(const std::string& command, const std::vector<std::string>& argv, const RunOptions& options,
              const std::vector<std::string>& files, Simulation::Observer observe) {
-  check_output_directory(options.out, options.force, files);
+  check_run_directory(options.out, options.force, files);
   print_left_out(options);
   std::optional<MotionRecorder> motion;
   if (options.record_motion) motion.emplace(std::filesystem::path(options.out) / kMotionFile, options);

@@ -93,13 +93,13 @@ class Alternate : public Strategy {
   // interface means.
   bool solve(SolveState& state, bool interior) {
     for (std::size_t r = 0; r < group_.size() && interior; ++r) {
-      if (is_cut(static_cast<int>(r)) && state.state[r] == RowState::free) state.state[r] = RowState::held;
+      if (is_cut(static_cast<int>(r)) && state.row_state[r] == RowState::free) state.row_state[r] = RowState::held;
     }
     const bool factored = state.factor_free();
     // To less than what counts as a violation: the other side starts from it.
     if (factored)
-      state.refine_free(0.1 * state.options.target_m_per_s, SolveState::kSearchRefinements, false);
-    for (RowState& row : state.state) {
+      state.refine_free(0.1 * state.violation_tolerance(), SolveState::kSearchRefinements, false);
+    for (RowState& row : state.row_state) {
       if (row == RowState::held) row = RowState::free;
     }
     return factored;

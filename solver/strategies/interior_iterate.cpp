@@ -42,11 +42,10 @@ void InteriorIterate::start_rows(SolveState& state, double inside) {
     row_speed_[r] = std::max(constants_.least_speed_m_per_s, speed);
   }
   barrier_.start(state, row_speed_);
-  cones_.start(state, row_speed_);
-  shift_.begin(cones_.product_count());
 }
 
-// Beside the kernel's analysis, if that is still to be done: it needs none of the rows' values.
+// Rows beside the kernel's analysis, if that is still to be done: it needs none of their values. Cones come after it, in tasks of their
+// own, of which a task can have none.
 void InteriorIterate::start(SolveState& state, double inside) {
   is_to_be_kept_ = false;
   row_error_.resize(state.slack.size());
@@ -58,6 +57,8 @@ void InteriorIterate::start(SolveState& state, double inside) {
   } else {
     start_rows(state, inside);
   }
+  cones_.start(state, row_speed_);
+  shift_.begin(cones_.product_count());
   update_velocity(state);
   measure(state);
 }

@@ -201,10 +201,10 @@ double IntervalBarrier::error(const SolveState& state, int first, int last,
 void IntervalBarrier::read_active_set(SolveState& state) const {
   state.run_over_rows([&](int first, int last, int) {
     for (int r = first; r < last; ++r) {
-      state.state[r] = is_fixed(r) ? RowState::lower : RowState::free;
+      state.row_state[r] = is_fixed(r) ? RowState::lower : RowState::free;
       for (const Side& side : sides_) {
         if (state.step->diagonal()[r] * side.s[r] < side.z[r])
-          state.state[r] = side.sign > 0 ? RowState::lower : RowState::upper;
+          state.row_state[r] = side.sign > 0 ? RowState::lower : RowState::upper;
       }
     }
   });

@@ -66,12 +66,12 @@ class Newton : public Strategy {
   // An exact solve on the present states ends the search when it violates nothing.
   bool finish(SolveState& state) {
     const double tolerance = state.violation_tolerance();
-    if (state.state == last_state_) {
+    if (state.row_state == last_state_) {
       if (!state.factor_free()) return false;
       state.refine_free(0.1 * tolerance, kMostRefinements, true);
       if (state.find_violations(tolerance) == 0) return state.residual() <= state.step->exact_limit_m_per_s();
     }
-    last_state_ = state.state;
+    last_state_ = state.row_state;
     return false;
   }
 
@@ -79,7 +79,7 @@ class Newton : public Strategy {
   bool direction(SolveState& state) {
     const StepProblem& problem = state.step->problem();
     for (std::size_t r = 0; r < state.impulse.size(); ++r) {
-      state.weight[r] = state.state[r] == RowState::free ? 1 / problem.compliance[r] : 0.0;
+      state.weight[r] = state.row_state[r] == RowState::free ? 1 / problem.compliance[r] : 0.0;
     }
     if (!state.factor()) return false;
     std::fill(state.f_r.begin(), state.f_r.end(), 0.0);
@@ -116,7 +116,7 @@ class Newton : public Strategy {
       const double c = problem.compliance[r], dw = row_step_[r];
       constant -= dw * state.impulse[r];
       const double curvature = dw * dw / c;
-      if (state.state[r] == RowState::free) rate += curvature;
+      if (state.row_state[r] == RowState::free) rate += curvature;
       if (dw == 0 || problem.lower[r] == problem.upper[r]) continue;
       const double at_lower = (problem.rhs[r] - row_velocity_[r] - c * problem.lower[r]) / dw;
       const double at_upper = (problem.rhs[r] - row_velocity_[r] - c * problem.upper[r]) / dw;

@@ -43,7 +43,7 @@ class Pivot : public Strategy {
   bool run(SolveState& state) override {
     is_bound_ = false;
     clamp(state);
-    warm_state_ = state.state;
+    warm_state_ = state.row_state;
     const double tolerance = state.violation_tolerance();
     if (!starts_settled(state, tolerance)) sweep(state, state.options.predictor_sweeps);
     state.changed_rows = state.step->row_count();
@@ -117,7 +117,7 @@ class Pivot : public Strategy {
   bool finish(SolveState& state, double tolerance) {
     StageTimer timer(state.tasks.clock(), Stage::refine);
     state.refine_free(0.1 * tolerance, SolveState::kLastRefinements, true);
-    state.changed_rows = count_changes(warm_state_, state.state);
+    state.changed_rows = count_changes(warm_state_, state.row_state);
     return state.residual() <= state.step->exact_limit_m_per_s();
   }
 

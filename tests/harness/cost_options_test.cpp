@@ -84,6 +84,9 @@ TEST(CostOptions, CalibrateWritesWhatRunsRead) {
   EXPECT_NE(nowhere.err.find("none/own.toml cannot be written: there is no directory"), std::string::npos)
       << nowhere.err;
   EXPECT_EQ(nowhere.err.find("timing on"), std::string::npos) << nowhere.err;
+  const ProgramResult over = run_cleave({"calibrate", one, two, "--out", one, "--force"});
+  EXPECT_EQ(over.exit_code, 1);
+  EXPECT_NE(over.err.find("would replace " + one + ", which is read"), std::string::npos) << over.err;
   const Arguments calibrate = {"calibrate", one, two, "--out", out, "--repeats", "1"};
   const ProgramResult made = run_cleave(calibrate);
   ASSERT_EQ(made.exit_code, 0) << made.err;

@@ -384,6 +384,17 @@ TEST_F(ReplayOfARun, MistakesAreNamedBeforeAnythingIsCreated) {
   }
 }
 
+TEST_F(ReplayOfARun, NothingTakesThePlaceOfALinkOrADevice) {
+  const std::string good = h5_files(*directory_ / "recorded").back();
+  const fs::path link = *directory_ / "link";
+  fs::create_symlink(*directory_ / "run" / "steps.csv", link);
+  const ProgramResult result = run_cleave({"export", good, "--format", "metis", "--out", link, "--force"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_NE(result.err.find("link is no regular file; name another"), std::string::npos) << result.err;
+  EXPECT_TRUE(fs::is_symlink(link));
+  fs::remove(link);
+}
+
 // A file of the final name is whole whenever the program dies.
 TEST(Record, KilledAnywhereLeavesWholeFilesOnly) {
   std::string steps = "0";

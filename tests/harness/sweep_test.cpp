@@ -215,6 +215,20 @@ TEST(Sweep, KeepsWhatIsCompleteAndForceDoesNot) {
   EXPECT_EQ(campaign.failures(), "");
 }
 
+TEST(Sweep, ARunOfItsOwnDoesNotGoIntoACampaign) {
+  const Campaign campaign(std::string(kTiny) + "seed = [1]\n");
+  ASSERT_EQ(campaign.sweep().exit_code, 0);
+  const std::string checksums = read_text(campaign.out() / "checksums");
+  for (const char* force : {"--gravity=9.81", "--force"}) {
+    const ProgramResult run = run_cleave({"run", "--scene", "ladder_free", "--steps", "1", "--solver",
+                                          "exact", force, "--out", campaign.out()});
+    EXPECT_EQ(run.exit_code, 1);
+    EXPECT_NE(run.err.find("holds a campaign; name another directory"), std::string::npos) << run.err;
+  }
+  EXPECT_EQ(read_text(campaign.out() / "checksums"), checksums);
+  EXPECT_NE(campaign.sweep().err.find("1 ok; 1 kept\n"), std::string::npos);
+}
+
 TEST(Sweep, ADamagedIndexIsNotBelieved) {
   const Campaign campaign(std::string(kTiny) + "seed = [1, 2]\n");
   ASSERT_EQ(campaign.sweep().exit_code, 0);

@@ -22,7 +22,7 @@ def add_options(parser, steps, measured, out):
     count = option_types.whole_number(1)
     parser.add_argument("--steps", type=count, default=steps, metavar="N", help="of every run (default %(default)s)")
     parser.add_argument("--measure-every", type=count, metavar="K",
-                        help=f"measure every K-th step (default: {measured} of the steps)")
+                        help=f"measure every K-th step (default: {measured})")
     parser.add_argument("--out", metavar="DIR", **out)
     parser.add_argument("--force", action="store_true", help="run again what is complete")
 

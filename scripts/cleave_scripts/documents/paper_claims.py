@@ -1,5 +1,6 @@
 """The claims of the paper and how they were judged."""
 from cleave_scripts.documents.stored import need
+from cleave_scripts.results.verdict_rule import RULE
 from cleave_scripts.table import text
 
 DATA = ("report/verdicts.csv", "scripts/report")
@@ -41,4 +42,8 @@ def verdict_counts(stored):
     return "\n".join(lines)
 
 
-BLOCKS = {"verdicts": verdicts, "verdict_counts": verdict_counts}
+def verdict_rule(_):
+    return RULE
+
+
+BLOCKS = {"verdicts": verdicts, "verdict_counts": verdict_counts, "verdict_rule": verdict_rule}

@@ -57,9 +57,11 @@ class Stored:
         return json.loads(path.read_text(encoding="utf-8"))["files"] if path.exists() else {}
 
     def origin(self, name):
-        """'AMD EPYC, 2 cores, commit 0123456789' of a directory of runs or of a file with provenance."""
+        """'AMD EPYC, 2 cores, commit 0123456789' of a directory of runs, or of a file with provenance or a directory of such."""
         manifests = [load_manifest(path.parent) for path in sorted((self.root / name).rglob("manifest.json"))]
-        entries = manifests or [self.provenance()[name]] if manifests or name in self.provenance() else []
+        known = self.provenance()
+        within = [entry for file, entry in known.items() if file.startswith(f"{name}/")]
+        entries = manifests or within or [known[file] for file in (name,) if file in known]
         texts = dict.fromkeys(
             f"{entry['machine']['cpu_model']}, {entry['machine']['cores']} cores, commit "
             f"{entry['build']['git_hash'][:10]}" for entry in entries)

@@ -6,8 +6,9 @@ import re
 
 from cleave_scripts.figures import looks, style
 from cleave_scripts.figures.claim import HALF
-from cleave_scripts.figures.verdicts import NOT_REPRODUCED, OPEN, REPRODUCED, RULE, WITHIN_NOISE
+from cleave_scripts.figures.verdicts import NOT_REPRODUCED, OPEN, REPRODUCED, WITHIN_NOISE
 from cleave_scripts.results.command_line import counted
+from cleave_scripts.results.verdict_rule import RULE
 from cleave_scripts.table.cell_texts import CELL_HELP, GAP, WAITED, combinations, scene_notes
 
 SIGNS = {
