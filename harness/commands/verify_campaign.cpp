@@ -66,8 +66,9 @@ std::vector<std::string> others_beside_index(const fs::path& out) {
 }
 
 void read_share(const fs::path& out, const fs::path& share, Rows& rows, CheckList& list) {
+  // A share that was killed leaves its lock, also where other shares have done its cells since.
   const std::vector<std::string> others =
-      share == out ? others_beside_index(out) : std::vector<std::string>{};
+      share == out ? others_beside_index(out) : std::vector<std::string>{kLockFile};
   if (!check_files(share, {kIndexFile, kSpecFile}, others, list)) return;
   std::vector<IndexRow> found;
   std::string error;
@@ -164,8 +165,9 @@ void verify_campaign(const fs::path& directory, CheckList& list) {
   const int before = list.failures();
   for (const fs::path& share : shares) read_share(directory, share, rows, list);
   if (list.failures() > before)
-    return CheckList::note(directory.string(),
-                           "its index is not the one that was written; its cells were not looked at");
+    return CheckList::note(
+        directory.string(),
+        "its cells were not looked at, for what is wrong with its index or with what lies beside it");
   for (const auto& [cell, of_cell] : rows) check_cell(directory, cell, of_cell, list);
   check_names(directory / kCellsFolder, "", rows, list);
   check_names(directory / kFailedFolder, ".log", rows, list);

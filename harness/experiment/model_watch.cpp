@@ -114,6 +114,7 @@ void ModelWatch::watch_pairs(const ObservedStep& step, const Solution& solution)
     if (problem.row_kind[row] == RowKind::normal) {
       pair.reached_cap |= ++contacts[pair_of(problem, row)] >= options_.contact_cap;
     } else {
+      pair.has_friction = true;
       pair.has_loaded_friction |= is_loaded;
       pair.was_at_bound |= is_at_bound(problem, row, solution.impulse);
     }
@@ -217,7 +218,10 @@ std::vector<ModelFinding> ModelWatch::findings() const {
           find_pairs(
               "friction_unloaded", "--friction none, for a scene in which nothing else has friction",
               RowKind::friction,
-              [](const PairRecord& pair) { return pair.touches && !pair.has_loaded_friction; }, without_rows),
+              [](const PairRecord& pair) {
+                return pair.touches && pair.has_friction && !pair.has_loaded_friction;
+              },
+              without_rows),
           find_pairs(
               "friction_never_at_bound", "these contacts only stick: joints would do", RowKind::friction,
               [](const PairRecord& pair) { return pair.has_loaded_friction && !pair.was_at_bound; },

@@ -51,7 +51,8 @@ class ModelWatch {
  private:
   using Pair = std::pair<int, int>;  // the lower body first; static: -1
   struct PairRecord {
-    bool touches = false, has_loaded_friction = false, was_at_bound = false, reached_cap = false;
+    bool touches = false, reached_cap = false;
+    bool has_friction = false, has_loaded_friction = false, was_at_bound = false;  // of its friction rows
   };
   struct Sample {
     StepProblem problem;

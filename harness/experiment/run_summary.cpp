@@ -27,6 +27,7 @@ std::string reason(const StepRecord& row) {
 void RunSummary::add(const StepRecord& row) {
   ++rows;
   if (has_result(row.status)) {  // others say nothing of residuals
+    ++rows_with_result;
     worst_residual_m_per_s = larger_or_nan(worst_residual_m_per_s, row.residual_m_per_s);
     worst_velocity_spread_m_per_s = larger_or_nan(worst_velocity_spread_m_per_s, row.velocity_spread_m_per_s);
   }
@@ -93,9 +94,10 @@ std::string RunSummary::text() const {
   // Where no world moved (replay) there is no velocity to compare with.
   const bool simulated = steps > 0;
   lines += simulated ? format("%d steps, ", steps) : format("%d problems, ", measured_steps);
-  lines += format("%d rows: %d ok, %d not ok; worst residual %.3g m/s", rows, rows_ok, rows - rows_ok,
-                  worst_residual_m_per_s);
-  if (simulated) lines += format(", worst velocity spread %.3g m/s", worst_velocity_spread_m_per_s);
+  lines += format("%d rows: %d ok, %d not ok", rows, rows_ok, rows - rows_ok);
+  if (rows_with_result > 0) lines += format("; worst residual %.3g m/s", worst_residual_m_per_s);
+  if (rows_with_result > 0 && simulated)
+    lines += format(", worst velocity spread %.3g m/s", worst_velocity_spread_m_per_s);
   return lines + format("; %.1f s\n", wall_s);
 }
 
