@@ -281,16 +281,14 @@ TEST_P(ConeSolverTest, SameBytesWithAnyNumberOfThreads) {
 
 // So many rows that they are tasks of their own, which the start beside the analysis can have none of.
 TEST_P(ConeSolverTest, ManyRowsGiveTheSameBytesWithAnyNumberOfThreads) {
-  for (const ContactSet set : {ContactSet::cone, ContactSet::coulomb}) {
-    const StepProblem problem =
-        with_sets(make_pile(2, {.columns = 5, .rows = 5, .layers = 3, .cfm = 1e-4}), set);
-    ASSERT_GT(problem.row_count(), SolveState::kFewRows);
-    const std::vector<int> parts = sliced_parts(problem.body_count(), 4);
-    const Answer one = solve("interior-point:" + GetParam(), problem, parts);
-    Solution two = cold_start(problem);
-    make_step_solver("interior-point:" + GetParam(), {.threads = 2})->solve(problem, parts, two);
-    EXPECT_TRUE(same_bytes(two.impulse, one.solution.impulse));
-  }
+  const StepProblem problem =
+      with_sets(make_pile(2, {.columns = 5, .rows = 3, .layers = 2, .cfm = 1e-3}), ContactSet::cone);
+  ASSERT_GT(problem.row_count(), SolveState::kFewRows);
+  const std::vector<int> parts = sliced_parts(problem.body_count(), 4);
+  const Answer one = solve("interior-point:" + GetParam(), problem, parts);
+  Solution two = cold_start(problem);
+  make_step_solver("interior-point:" + GetParam(), {.threads = 2})->solve(problem, parts, two);
+  EXPECT_TRUE(same_bytes(two.impulse, one.solution.impulse));
 }
 
 TEST_P(ConeSolverTest, SecondSolveAllocatesNothing) {
