@@ -6,16 +6,15 @@ namespace cleave {
 
 inline constexpr int kOctetLanes = 8;
 
-// The k-th row of each of eight groups; lambda_r - w_r / d = kept lambda_r + rest - (J_r / d) v with d = d_r.
+// The k-th row of each of eight groups; lambda_r - w_r / d_r = kept lambda_r + rest - (J_r / d_r) v.
 // Nothing moves in the lane of a group that has no k-th row.
 struct alignas(64) OctetRow {
-  float jacobian[12][kOctetLanes] = {};       // J_r / d, six numbers of body a and six of b
+  float jacobian[12][kOctetLanes] = {};       // J_r / d_r, six numbers of body a and six of b
   float mass_jacobian[12][kOctetLanes] = {};  // M^-1 J_r^T
   float kept[kOctetLanes] = {}, rest[kOctetLanes] = {};
   float lower[kOctetLanes] = {}, upper[kOctetLanes] = {};
   float impulse[kOctetLanes] = {};
-  float change[kOctetLanes] = {};      // lambda_k - lambda_k-1 (sweep_momentum.h)
-  signed char side[kOctetLanes] = {};  // at its lower bound, free, at its upper one
+  float change[kOctetLanes] = {};  // lambda_k - lambda_k-1 (sweep_momentum.h)
 };
 
 // Up to eight groups of rows, no two of them on one body that moves.

@@ -2,13 +2,11 @@
 //
 //     w_r = J_r v + C_r lambda_r - b_r,   lambda_r <- clamp(lambda_r - w_r / d_r, lo_r, hi_r),   v += M^-1 J_r^T dlambda
 //
-// as in gauss_seidel.h, where rows come in their natural order, from one sweep to the next with momentum (sweep_momentum.h).
-// Bodies are
-// cut into slabs (slabs.h), and the rows of an inside or a gap are one task of a sweep. A task visits its groups of rows
-// (those between two bodies) in octets: up to eight groups of about as many rows, of which no two share a dynamic body,
-// in the lanes of a vector. Order and bytes depend on the problem alone, not on the number of threads. Numbers are of
-// single precision, half the memory that a sweep goes through: what comes out is a guess of the active set, and solved
-// exactly afterwards.
+// as in gauss_seidel.h, where rows come in their natural order; from one sweep to the next with momentum (sweep_momentum.h). Bodies
+// are cut into slabs (slabs.h), and the rows of an inside or a gap are one task of a sweep. A task visits its groups of rows (those
+// between two bodies) in octets: up to eight groups of about as many rows, of which no two share a dynamic body, in the lanes of a
+// vector. Order and bytes depend on the problem alone, not on the number of threads. Numbers are of single precision, half the
+// memory that a sweep goes through: what comes out is a guess of the active set, and solved exactly afterwards.
 #pragma once
 
 #include <array>
@@ -65,7 +63,8 @@ class SlabSweeps {
   template <class ForBody, class ForGroup>
   void run_over_chunks(ParallelTasks& tasks, const ForBody& for_body, const ForGroup& for_group) const;
 
-  // Of every lane of an octet's row: at its lower bound, free, at its upper one. Looked at after a run alone.
+  // Of every lane of an octet's row: at its lower bound, free, at its upper one. What looks alone read stands apart from
+  // what every sweep goes through.
   using RowSides = std::array<signed char, kOctetLanes>;
 
   const PreparedStep* step_ = nullptr;

@@ -19,9 +19,14 @@ SweepMomentum::SweepMomentum(double least_relative_compliance) {
 }
 
 void SweepMomentum::end_sweep(double agreement) {
+  if (!(agreement >= 0)) {
+    t_ = 1;
+    share_ = 0;
+    return;
+  }
   const double before = t_;
-  t_ = agreement >= 0 ? (1 + std::sqrt(1 + 4 * before * before)) / 2 : 1;
-  share_ = agreement >= 0 ? static_cast<float>(std::min((before - 1) / t_, most_share_)) : 0;
+  t_ = (1 + std::sqrt(1 + 4 * before * before)) / 2;
+  share_ = static_cast<float>(std::min((before - 1) / t_, most_share_));
 }
 
 }  // namespace cleave

@@ -18,9 +18,10 @@ namespace cleave {
 namespace {
 
 constexpr int kRestartSweeps = 30;
-// Enough sweeps to start from, options.predictor_sweeps at most, where five of them (SlabSweeps::kSweepsOfALook) move no more than this share of the rows to or
-// from a bound. Five cost about a tenth of a factorisation with what goes with it. Twelve recorded steps of a pile of 200 boxes
-// (cfm 1e-5) take 84 factorisations from a cold start after 10 sweeps each, 41 after 40, 33 after 60 and after 80.
+// Enough sweeps to start from, options.predictor_sweeps at most, where five of them (SlabSweeps::kSweepsOfALook) move no more than
+// this share of the rows to or from a bound. Five cost about a tenth of a factorisation with what goes with it. Twelve recorded
+// steps of a pile of 200 boxes (cfm 1e-5) take 84 factorisations from a cold start after 10 sweeps each, 41 after 40, 33 after 60
+// and after 80.
 constexpr double kSettledShare = 0.003;
 // An iteration makes progress when it leaves less than this share of the least number of violations so far.
 constexpr double kProgress = 0.75;
