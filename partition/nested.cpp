@@ -1,9 +1,7 @@
 #include "partition/nested.h"
 
 #include <algorithm>
-#include <cassert>
 #include <numeric>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -23,12 +21,12 @@ struct Node {
   bool is_leaf;
 };
 
-// A set that is still to be looked at. Leaves have no graph.
+// A set that is still to be looked at. One that is to be no set of others has no graph.
 struct OpenSet {
   std::vector<int> bodies;  // of the whole graph, ascending
   BodyGraph graph;
   int parent;
-  bool is_leaf;
+  bool may_split;
 };
 
 // Depth first with a stack of its own: a set that loses one body at a time makes a deep tree.
@@ -43,45 +41,47 @@ class Recursion {
     if (n == 0) return std::move(result_);
     std::vector<int> bodies(n);
     std::iota(bodies.begin(), bodies.end(), 0);
-    if (const int root = add_node(-1, n <= max_bodies_, bodies); !nodes_[root].is_leaf)
-      split(graph, bodies, root);
+    take(graph, bodies, -1, n > max_bodies_);
     while (!open_.empty()) {
       const OpenSet set = std::move(open_.back());
       open_.pop_back();
-      const int node = add_node(set.parent, set.is_leaf, set.bodies);
-      if (!set.is_leaf) split(set.graph, set.bodies, node);
+      take(set.graph, set.bodies, set.parent, set.may_split);
     }
     number_nodes();
     return std::move(result_);
   }
 
  private:
-  int add_node(int parent, bool is_leaf, std::span<const int> bodies) {
-    nodes_.push_back({parent, is_leaf});
-    if (is_leaf) {
-      for (const int body : bodies) result_.leaves.part_of_body[body] = result_.leaves.part_count;
-      ++result_.leaves.part_count;
+  void take(const BodyGraph& graph, std::span<const int> bodies, int parent, bool may_split) {
+    if (may_split) {
+      const int most_bodies = graph.body_count() / arity_ + (graph.body_count() % arity_ > 0);
+      const Partition parts = split_set_(graph, most_bodies);
+      if (parts.part_count >= 2) {
+        nodes_.push_back({parent, false});
+        return open_children(graph, bodies, parts, most_bodies);
+      }
     }
-    return static_cast<int>(nodes_.size()) - 1;
+    nodes_.push_back({parent, true});
+    for (const int body : bodies) result_.leaves.part_of_body[body] = result_.leaves.part_count;
+    ++result_.leaves.part_count;
   }
 
-  // Opens the children, the first to be taken first.
-  void split(const BodyGraph& graph, std::span<const int> bodies, int node) {
-    const int most_bodies = graph.body_count() / arity_ + (graph.body_count() % arity_ > 0);
-    const Partition parts = split_set_(graph, most_bodies);
-    assert(parts.part_count >= 2);
+  // Of the node that was made last, the first to be taken first.
+  void open_children(const BodyGraph& graph, std::span<const int> bodies, const Partition& parts,
+                     int most_bodies) {
+    const int node = static_cast<int>(nodes_.size()) - 1;
     const std::vector<int> sizes = part_sizes(parts);
     std::vector<OpenSet> children(parts.part_count);
     std::vector<int> set_of_body = parts.part_of_body;
     for (int child = 0; child < parts.part_count; ++child) {
       children[child].parent = node;
-      children[child].is_leaf = most_bodies <= max_bodies_ || sizes[child] <= max_bodies_;
+      children[child].may_split = most_bodies > max_bodies_ && sizes[child] > max_bodies_;
       children[child].bodies.reserve(sizes[child]);
     }
     for (int k = 0; k < graph.body_count(); ++k) {
       OpenSet& child = children[parts.part_of_body[k]];
       child.bodies.push_back(bodies[k]);
-      if (child.is_leaf) set_of_body[k] = -1;
+      if (!child.may_split) set_of_body[k] = -1;
     }
     std::vector<BodyGraph> graphs = graph.induced(set_of_body, parts.part_count);
     for (int child = parts.part_count - 1; child >= 0; --child) {
@@ -124,16 +124,17 @@ NestedPartition split_by_recursion(const BodyGraph& graph, int max_bodies, int a
 }
 
 SetSplitter::SetSplitter(const Algorithm& partitioner, const Algorithm& refiner, int arity)
-    : partitioner_(partitioner), refiner_(make_refiner(refiner)), arity_(arity) {
-  const std::unique_ptr<Partitioner> made = make_partitioner(partitioner);
-  if (!made->promised().at_most_max_bodies)
-    throw std::invalid_argument("partitioner " + partitioner.text +
-                                " keeps to no max-bodies, so it cannot split by recursion");
-  max_bodies_ = made->max_bodies().value();
-}
+    : partitioner_(partitioner),
+      refiner_(make_refiner(refiner)),
+      arity_(arity),
+      max_bodies_(partitioner.settings.integer("max-bodies")) {}
 
 Partition SetSplitter::grow(const BodyGraph& set, int most_bodies) const {
-  Partition parts = make_partitioner(with_max_bodies(partitioner_, most_bodies))->run(set);
+  const std::unique_ptr<Partitioner> partitioner =
+      make_partitioner(with_max_bodies(partitioner_, most_bodies));
+  Partition parts = partitioner->run(set);
+  const PartsPromise& promise = partitioner->promised();
+  if (!promise.at_most_max_bodies && !promise.at_most_grown_bodies) return parts;
   const int most_joined =
       most_bodies <= max_bodies_ ? max_bodies_ : most_grown_bodies(most_bodies, kJoinedGrowth);
   join_leftovers(set, {arity_, most_bodies / 2 + most_bodies % 2, most_joined}, parts);

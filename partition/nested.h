@@ -1,6 +1,6 @@
 // Splits bodies by recursion (Karypis & Kumar, SIAM Journal on Scientific Computing 20, 1998, section 2.1): a set of
 // more than max_bodies bodies is split into about `arity` children, each of which is split again. What splits one set
-// is any partitioner that keeps to max-bodies, then any refiner.
+// is any partitioner that has a parameter max-bodies, then any refiner. A set that it leaves whole is a leaf.
 //
 // The nodes of the tree are the sets: the leaves 0..parts-1, which are the parts, in order of creation (depth
 // first, children in the order of their parts), then the inner nodes. Every parent has a greater number than its
@@ -25,26 +25,25 @@ struct NestedPartition {
 };
 
 // Splits one set of at least two bodies. most_bodies: of a child, ceil(bodies of the set / arity), which what refines
-// may exceed by its growth. Must return at least two parts.
+// may exceed by its growth.
 using SplitSet = std::function<Partition(const BodyGraph& set, int most_bodies)>;
 
 // Leaves have at most max_bodies bodies, and those of a set whose children were to have so many
-// (most_bodies <= max_bodies) as many as split_set left them. max_bodies >= 1, arity >= 2.
+// (most_bodies <= max_bodies), or that split_set left whole, as many as split_set left them. max_bodies >= 1, arity >= 2.
 NestedPartition split_by_recursion(const BodyGraph& graph, int max_bodies, int arity,
                                    const SplitSet& split_set);
 
 // What splits the sets: a partitioner and a refiner of the tables.
 class SetSplitter {
  public:
-  // Throws std::invalid_argument with one line, beginning with the partitioner, for one that has no max-bodies
-  // or does not promise to keep to it. arity >= 2.
+  // partitioner: one that has a parameter max-bodies. arity >= 2.
   SetSplitter(const Algorithm& partitioner, const Algorithm& refiner, int arity);
 
   int max_bodies() const { return max_bodies_; }
   int arity() const { return arity_; }
 
-  // Grows parts of at most most_bodies bodies and joins what is left over (leftovers.h): parts of less than half
-  // of that, to at most 1.2 times that, or to max_bodies where children are to be leaves.
+  // Runs the partitioner with max-bodies = most_bodies. Where its row promises a bound, what is left over (leftovers.h) is
+  // joined: parts of less than half of that, to at most 1.2 times that, or to max_bodies where children are to be leaves.
   Partition grow(const BodyGraph& set, int most_bodies) const;
   void refine(const BodyGraph& set, int most_bodies, Partition& parts) const;
 
@@ -52,7 +51,7 @@ class SetSplitter {
   Algorithm partitioner_;
   std::unique_ptr<Refiner> refiner_;
   int arity_;
-  int max_bodies_ = 0;
+  int max_bodies_;
 };
 
 }  // namespace cleave

@@ -78,8 +78,8 @@ bool ColumnStructure::find_columns(long most_blocks) {
 bool ColumnStructure::choose_order(bool fits, long most_blocks) {
   const double flops = fits ? all_flops() : std::numeric_limits<double>::infinity();
   order_by_degree_ = node_at_position_;
-  order_by_dissection(graph(), node_at_position_);
-  if (find_columns(most_blocks) && all_flops() < flops) return true;
+  const bool dissected = order_by_dissection(graph(), node_at_position_);
+  if (dissected && find_columns(most_blocks) && all_flops() < flops) return true;
   node_at_position_ = order_by_degree_;
   return find_columns(most_blocks);
 }

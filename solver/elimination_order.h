@@ -19,7 +19,7 @@ void order_by_degree(const BlockGraph& graph, std::span<const int> constraint,
 
 // Nested dissection (George 1973; Karypis and Kumar 1998; METIS): much slower, and worth it where a pile is as high as it
 // is wide. It resets the sequence of the C library's rand(), which it draws from: a program that calls rand() on another
-// thread meanwhile gets another order. Throws std::bad_alloc.
-void order_by_dissection(const BlockGraph& graph, std::span<int> node_at_position);
+// thread meanwhile gets another order. False, and nothing is written, in a build without METIS. Throws std::bad_alloc.
+[[nodiscard]] bool order_by_dissection(const BlockGraph& graph, std::span<int> node_at_position);
 
 }  // namespace cleave

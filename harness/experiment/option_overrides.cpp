@@ -6,7 +6,6 @@
 #include "harness/base/names.h"
 #include "harness/experiment/chosen_kernel.h"
 #include "harness/experiment/option_errors.h"
-#include "harness/experiment/splitter.h"
 #include "partition/registry.h"
 #include "solver/registry.h"
 
@@ -32,10 +31,6 @@ std::string refiner_of_cost(const std::string& name) {
 std::string why_unable(const Algorithm& partitioner, const RunOptions& options) {
   if (options.skip_small_islands && !partitioner.settings.has("max-bodies"))
     return "which has no max-bodies, as --skip-small-islands needs";
-  const bool keeps_to_bound = make_partitioner(partitioner)->promised().at_most_max_bodies;
-  for (const Algorithm& solver : options.solvers)
-    if (arity_of(solver) && !keeps_to_bound)
-      return "which keeps to no max-bodies, as " + solver.text + " needs";
   for (const Algorithm& solver : options.solvers)
     if (solver_halves(solver.name).kernel == kChosenKernel && !partitioner.settings.has("cost-kernel"))
       return "which chooses its parts for no kernel, as " + solver.text + " needs";

@@ -31,14 +31,17 @@ NestedPartition SmallIslands::with_small(const NestedPartition& large) const {
   NestedPartition all{with_small(large.leaves), {}};
   if (all.leaves.part_count == 1) all.parent_of_part = {-1};
   if (all.leaves.part_count <= 1) return all;
-  // Inner nodes come after all leaves; a large island has one at least.
+  // Inner nodes come after all leaves. Without any, one that holds large islands and small ones is made.
   const int nodes = static_cast<int>(large.parent_of_part.size()), leaves = large.leaves.part_count;
   const int root = nodes > leaves ? nodes - 1 + small_count_ : all.leaves.part_count;
   const auto add = [&](int node) {
     const int parent = large.parent_of_part[node];
     all.parent_of_part.push_back(parent < 0 ? -1 : parent + small_count_);
   };
-  for (int leaf = 0; leaf < leaves; ++leaf) add(leaf);
+  if (nodes > leaves)
+    for (int leaf = 0; leaf < leaves; ++leaf) add(leaf);
+  else
+    all.parent_of_part.assign(leaves, root);
   all.parent_of_part.insert(all.parent_of_part.end(), small_count_, root);
   for (int inner = leaves; inner < nodes; ++inner) add(inner);
   if (nodes == leaves) all.parent_of_part.push_back(-1);

@@ -32,7 +32,8 @@ Splitter::Splitter(const SplitSetup& setup)
     throw std::invalid_argument("--body-order: " + order_.text + " renumbers bodies, which the parts of " +
                                 setup.partitioner.text + " do not follow; allowed with it: scene");
   if (!setup.choice.empty()) partitioner_->keep_choice(setup.choice);
-  if (setup.arity) set_splitter_.emplace(setup.partitioner, setup.refiner, *setup.arity);
+  if (setup.arity && partitioner_->max_bodies())
+    set_splitter_.emplace(setup.partitioner, setup.refiner, *setup.arity);
   if (skip_small_islands_ && !partitioner_->max_bodies())
     throw std::invalid_argument("--skip-small-islands: partitioner " + setup.partitioner.text +
                                 " has no max-bodies, which says what is small");

@@ -39,9 +39,10 @@ struct Split {
 struct SplitSetup {
   Algorithm partitioner, refiner;
   bool skip_small_islands = false;
-  std::optional<int> arity = {};  // children of a set, by recursion; none: one level
-  BodyOrder order = {};           // numbers by which they are split
-  std::string choice = {};        // that a partitioner made before and is to make again; empty: it chooses
+  // Children of a set, by recursion; none, or a partitioner without max-bodies (file, single, auto): one level.
+  std::optional<int> arity = {};
+  BodyOrder order = {};     // numbers by which they are split
+  std::string choice = {};  // that a partitioner made before and is to make again; empty: it chooses
 };
 
 // What a solver says of it: its parameter `arity`, where it has one.
@@ -50,7 +51,7 @@ std::optional<int> arity_of(const Algorithm& solver);
 class Splitter {
  public:
   // Throws std::invalid_argument for --skip-small-islands with a partitioner that has no max-bodies, for a choice that
-  // the partitioner does not make, for another order than the scene's with parts that come from files, and as SetSplitter.
+  // the partitioner does not make, and for another order than the scene's with parts that come from files.
   explicit Splitter(const SplitSetup& setup);
 
   // step: which one of its run the problem is. Throws CannotSplit where the partitioner does.
@@ -72,7 +73,7 @@ class Splitter {
 
   std::unique_ptr<Partitioner> partitioner_;
   std::unique_ptr<Refiner> refiner_;
-  std::optional<SetSplitter> set_splitter_;  // where there is an arity
+  std::optional<SetSplitter> set_splitter_;  // where bodies are split by recursion
   bool skip_small_islands_;
   BodyOrder order_;
 };

@@ -4,7 +4,9 @@
 #include <elf.h>
 #include <hdf5.h>
 #include <link.h>
+#ifdef CLEAVE_METIS
 #include <metis.h>
+#endif
 #include <omp.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -145,10 +147,12 @@ std::vector<std::pair<std::string, std::string>> library_versions() {
       {"eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
       {"suitesparse", dotted(SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION, SUITESPARSE_SUBSUB_VERSION)},
       {"camd", dotted(CAMD_MAIN_VERSION, CAMD_SUB_VERSION, CAMD_SUBSUB_VERSION)},
-      {"metis", dotted(METIS_VER_MAJOR, METIS_VER_MINOR, METIS_VER_SUBMINOR)},
       {"hdf5", dotted(static_cast<int>(hdf5[0]), static_cast<int>(hdf5[1]), static_cast<int>(hdf5[2]))},
       {"openmp", std::to_string(_OPENMP)},
       {"cli11", CLI11_VERSION}};
+#ifdef CLEAVE_METIS
+  versions.emplace_back("metis", dotted(METIS_VER_MAJOR, METIS_VER_MINOR, METIS_VER_SUBMINOR));
+#endif
 #ifdef CLEAVE_SCOTCH
   versions.emplace_back("scotch", dotted(SCOTCH_VERSION, SCOTCH_RELEASE, SCOTCH_PATCHLEVEL));
 #endif

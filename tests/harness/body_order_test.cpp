@@ -45,7 +45,6 @@ TEST(BodyOrder, IsSplittingARenumberedProblem) {
     std::copy_n(problem.mass.begin() + 36 * i, 36, other.mass.begin() + 36 * number[i]);
   for (const std::string& partitioner : std::vector<std::string>{"bfs", "mindp", "mr", "multilevel"})
     for (const std::optional<int> arity : {std::optional<int>(), std::optional<int>(3)}) {
-      if (arity && partitioner == "multilevel") continue;  // keeps to no max-bodies
       SplitSetup setup{read_named("partitioner", partitioner + "@max-bodies=7"), read_named("refiner", "fm"),
                        false, arity};
       const Split expected = Splitter(setup).run(other);

@@ -1,11 +1,16 @@
-// Planned solves against solves of all rows: the same velocities on the scenes with contacts, whatever was left out.
+// Planned solves against solves of all rows: the same velocities on all scenes and on random worlds, whatever was left out.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <memory>
+#include <random>
+#include <set>
 #include <string>
 
 #include "harness/experiment/algorithms.h"
@@ -14,18 +19,23 @@
 #include "harness/experiment/model_planner.h"
 #include "harness/experiment/options.h"
 #include "harness/experiment/problem_graph.h"
+#include "scenarios/scene.h"
 #include "solver/registry.h"
+#include "tests/harness/random_world.h"
+#include "tests/harness/run_program.h"
 #include "tests/harness/world_stepper.h"
 
 namespace cleave {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct PlannedScene {
   std::map<std::string, std::string> options;
   int steps;
 };
 
-// The fall, the impact, at rest, hit by the ball; several seeds stand for worlds at random.
+// The fall, the impact, at rest, hit by the ball.
 const std::vector<PlannedScene> kScenes = {
     {{{"scene", "chain_drop"}, {"links", "24"}}, 90},
     {{{"scene", "log_tower"}, {"layers", "5"}, {"logs", "3"}}, 90},
@@ -37,6 +47,14 @@ const std::vector<PlannedScene> kScenes = {
     {{{"scene", "silo"}}, 20},
     {{{"scene", "crane"}}, 20},
     {{{"scene", "mixed_site"}, {"links", "50"}, {"rings", "1"}, {"dt", "0.001"}, {"cfm", "1e-8"}}, 20},
+    {{{"scene", "ladder_stack"}, {"copies", "2"}}, 40},
+    {{{"scene", "ladder_heavy_top"}, {"cfm", "1e-8"}}, 40},
+    {{{"scene", "ladder_alternating"}, {"cfm", "1e-8"}}, 40},
+    {{{"scene", "ladder_incline"}, {"mu", "0.3"}}, 40},
+    {{{"scene", "ladder_chain"}, {"angle", "60"}}, 40},
+    {{{"scene", "ladder_loop"}}, 40},
+    {{{"scene", "ladder_free"}, {"boxes", "3"}}, 40},
+    {{{"scene", "file@path=" + (fs::path(CLEAVE_SOURCE_DIR) / "scenarios/files/pile.toml").string()}}, 60},
 };
 
 WorldStepper stepper_of(const PlannedScene& scene) {
@@ -81,24 +99,78 @@ void expect_full_answer(const StepProblem& problem, const Solved& solved) {
   EXPECT_LE(difference(solved.solution.velocity, full.solution.velocity), 1e-9);
 }
 
-TEST(ModelPlanner, ScenesMoveAsWithAllRows) {
-  for (const PlannedScene& scene : kScenes) {
-    WorldStepper world = stepper_of(scene);
-    int left_out = 0, returned = 0, rows = 0;
-    for (int step = 0; step < scene.steps; ++step) {
-      world.step();
-      SCOPED_TRACE(scene.options.at("scene") + ", step " + std::to_string(step));
-      const StepProblem& problem = world.problem();
-      const Solved solved = solve_with(problem, ModelPlanner().plan(problem));
-      expect_full_answer(problem, solved);
-      if (HasFailure()) return;
-      EXPECT_EQ(solved.counts.passes > 1, solved.counts.rows_returned > 0);
-      left_out += solved.counts.rows_left_out;
-      returned += solved.counts.rows_returned;
-      rows += problem.row_count();
-    }
-    EXPECT_LE(2 * returned, left_out) << "of " << rows << " rows, " << scene.options.at("scene");
+struct PlannedRows {
+  int left_out = 0, returned = 0, all = 0;
+};
+
+using Plan = std::function<std::vector<RowPlan>(const StepProblem& problem)>;
+
+std::vector<RowPlan> planned(const StepProblem& problem) { return ModelPlanner().plan(problem); }
+
+PlannedRows expect_to_move_as_with_all_rows(const PlannedScene& scene, const std::string& name,
+                                            const Plan& plan = planned) {
+  WorldStepper world = stepper_of(scene);
+  PlannedRows rows;
+  for (int step = 0; step < scene.steps; ++step) {
+    world.step();
+    SCOPED_TRACE(name + ", step " + std::to_string(step));
+    const StepProblem& problem = world.problem();
+    const Solved solved = solve_with(problem, plan(problem));
+    expect_full_answer(problem, solved);
+    if (testing::Test::HasFailure()) break;
+    EXPECT_EQ(solved.counts.passes > 1, solved.counts.rows_returned > 0);
+    rows.left_out += solved.counts.rows_left_out;
+    rows.returned += solved.counts.rows_returned;
+    rows.all += problem.row_count();
   }
+  return rows;
+}
+
+TEST(ModelPlanner, ScenesMoveAsWithAllRows) {
+  std::set<std::string> moved;
+  for (const PlannedScene& scene : kScenes) {
+    const std::string& name = scene.options.at("scene");
+    const PlannedRows rows = expect_to_move_as_with_all_rows(scene, name);
+    if (HasFailure()) return;
+    EXPECT_LE(2 * rows.returned, rows.left_out) << "of " << rows.all << " rows, " << name;
+    moved.insert(name.substr(0, name.find('@')));
+  }
+  for (const SceneEntry& scene : scenes()) EXPECT_TRUE(moved.contains(scene.name)) << scene.name;
+}
+
+PlannedRows move_random_worlds(int steps, const Plan& plan) {
+  const TemporaryDirectory directory;
+  PlannedRows rows;
+  for (int seed = 1; seed <= 30 && !testing::Test::HasFailure(); ++seed) {
+    const fs::path path = directory / "world.toml";
+    std::ofstream(path) << random_world(seed);
+    const PlannedScene scene{{{"scene", "file@path=" + path.string()},
+                              {"cfm", seed % 2 == 0 ? "1e-5" : "1e-8"},
+                              {"mu", seed % 3 == 0 ? "0" : "0.5"}},
+                             steps};
+    const PlannedRows found = expect_to_move_as_with_all_rows(scene, "seed " + std::to_string(seed), plan);
+    rows.left_out += found.left_out;
+    rows.returned += found.returned;
+    rows.all += found.all;
+  }
+  return rows;
+}
+
+TEST(ModelPlanner, RandomWorldsMoveAsWithAllRows) {
+  const PlannedRows rows = move_random_worlds(150, planned);
+  EXPECT_GT(rows.left_out, 1000) << "of " << rows.all;
+}
+
+// A third of what can be left out is, whether it matters or not.
+TEST(ModelPlanner, RandomWorldsTakeBackWhatMatters) {
+  std::mt19937_64 engine(7);
+  const PlannedRows rows = move_random_worlds(60, [&](const StepProblem& problem) {
+    std::vector<RowPlan> plan = planned(problem);
+    for (int row = 0; row < problem.row_count(); ++row)
+      if (problem.row_kind[row] == RowKind::normal && engine() % 3 == 0) plan[row] = RowPlan::zero;
+    return plan;
+  });
+  EXPECT_GT(rows.returned, rows.all / 20) << "of " << rows.all;
 }
 
 // Extraction builds no friction rows where mu = 0; problems of others may have them.

@@ -50,7 +50,8 @@ std::string tree_error(const Split& split) {
 
 TEST(NestedSplit, HandsOverATreeForEveryPair) {
   const StepProblem problem = chains({40, 7, 1, 30});
-  for (const Algorithm& partitioner : read_list("partitioner", "paper", {{"max-bodies", "4"}}))
+  for (const Algorithm& partitioner :
+       read_list("partitioner", "paper,multilevel,karger@trials=3,random", {{"max-bodies", "4"}}))
     for (const Algorithm& refiner : read_list("refiner", "all", {})) {
       SCOPED_TRACE(partitioner.text + "+" + refiner.text);
       const Split split = Splitter({partitioner, refiner, false, 3}).run(problem);
@@ -110,20 +111,41 @@ TEST(NestedSplit, SmallIslandsAloneAreAllOfTheTree) {
   EXPECT_EQ(parents({1, 5, 2}), (Parents{3, 3, 3, -1}));
 }
 
-TEST(NestedSplit, RefusesWhoKeepsToNoBound) {
+// Parts without a size of their own are as they are: one level, which needs no tree.
+TEST(NestedSplit, PartsWithoutMaxBodiesAreOneLevel) {
   const TemporaryDirectory directory;
   std::ofstream(directory / "parts") << "0\n1\n1\n";
-  const std::string file = "file@path=" + (directory / "parts").string();
-  EXPECT_NO_THROW(Splitter({read_named("partitioner", file), read_named("refiner", "none")}));
-  try {
-    const Splitter splitter(setup(file, "none", 2));
-    FAIL() << "made";
-  } catch (const std::invalid_argument& error) {
-    const std::string text = error.what();
-    EXPECT_TRUE(text.starts_with("partitioner file@")) << text;
-    EXPECT_NE(text.find("keeps to no max-bodies, so it cannot split by recursion"), std::string::npos)
-        << text;
+  for (const std::string& partitioner :
+       {"file@path=" + (directory / "parts").string(), std::string("single")}) {
+    const Split nested = Splitter(setup(partitioner, "none", 2)).run(chains({3}));
+    const Split once =
+        Splitter({read_named("partitioner", partitioner), read_named("refiner", "none")}).run(chains({3}));
+    EXPECT_EQ(nested.parts.part_of_body, once.parts.part_of_body) << partitioner;
+    EXPECT_TRUE(nested.parent_of_part.empty()) << partitioner;
   }
+}
+
+// The groups of a scene are the children of the root; a group is not split again, or into runs of its own.
+TEST(NestedSplit, GroupsAreTheFirstLevelOfATree) {
+  const StepProblem problem = chains({12});
+  std::vector<int> group(12, 0);
+  std::fill(group.begin() + 4, group.end(), 1);
+  const auto split = [&](const std::string& partitioner, bool skips) {
+    return Splitter(setup(partitioner, "none", 2, skips)).run(problem, std::nullopt, {{}, group});
+  };
+  const Split whole = split("semantic@max-bodies=3", false);
+  EXPECT_EQ(whole.parts.part_of_body, group);
+  EXPECT_EQ(whole.parent_of_part, (std::vector<int>{2, 2, -1}));
+  const Split runs = split("semantic@max-bodies=4@split=chunks", false);
+  EXPECT_EQ(runs.parts.part_of_body, (std::vector<int>{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
+  EXPECT_EQ(tree_error(runs), "");
+  // One group alone is one leaf, beside which small islands hang from a root of their own.
+  std::ranges::fill(group, 0);
+  EXPECT_EQ(split("semantic@max-bodies=3", false).parent_of_part, std::vector<int>{-1});
+  const Split beside = Splitter(setup("semantic@max-bodies=3", "none", 2, true))
+                           .run(chains({9, 3}), std::nullopt, {{}, group});
+  EXPECT_EQ(beside.parent_of_part, (std::vector<int>{2, 2, -1}));
+  EXPECT_EQ(beside.parts.part_of_body, (std::vector<int>{0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1}));
 }
 
 TEST(NestedSplit, ArityIsAParameterOfTheSolver) {

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "harness/experiment/algorithms.h"
 #include "harness/files/problem_file.h"
+#include "partition/registry.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -110,14 +112,6 @@ TEST_F(Positions, PartsThatNobodyCanMakeAgainAreNotVerified) {
 }
 
 TEST_F(Positions, AllLeavesOutWhatTheRunCannotUse) {
-  const ProgramResult nested = replay(
-      problem(), "nested", {"--partitioner", "all", "--solver", "pivot:schur-nested", "--repeats", "1"});
-  EXPECT_EQ(nested.exit_code, 0) << nested.err;
-  for (const char* name : {"single", "karger"})
-    EXPECT_NE(nested.err.find(std::string("--partitioner all leaves out ") + name +
-                              ", which keeps to no max-bodies, as pivot:schur-nested needs\n"),
-              std::string::npos)
-        << nested.err;
   const ProgramResult skipping =
       replay(problem(), "skipping", {"--partitioner", "all", "--skip-small-islands", "--repeats", "1"});
   EXPECT_EQ(skipping.exit_code, 0) << skipping.err;
@@ -126,12 +120,32 @@ TEST_F(Positions, AllLeavesOutWhatTheRunCannotUse) {
           "--partitioner all leaves out single, which has no max-bodies, as --skip-small-islands needs\n"),
       std::string::npos)
       << skipping.err;
-  // Named beside it, it is refused.
+  // Named itself, it is refused.
   const ProgramResult named =
-      replay(problem(), "named", {"--partitioner", "all,karger@trials=5", "--solver", "pivot:schur-nested"});
+      replay(problem(), "named", {"--partitioner", "single", "--skip-small-islands"});
   EXPECT_EQ(named.exit_code, 1);
-  EXPECT_NE(named.err.find("partitioner karger@trials=5 keeps to no max-bodies"), std::string::npos)
-      << named.err;
+  EXPECT_NE(named.err.find("partitioner single has no max-bodies"), std::string::npos) << named.err;
+}
+
+// Everything that this scene can be split by, in trees that another process splits again, to one solution.
+TEST_F(Positions, AllPartitionersSplitByRecursion) {
+  const Arguments split = {
+      "--partitioner", "all,karger@trials=5", "--solver", "exact,pivot:schur-nested", "--repeats", "1"};
+  const ProgramResult nested = replay(problem(), "nested", split);
+  ASSERT_EQ(nested.exit_code, 0) << nested.err;
+  const CsvTable rows = read_csv(*this / "nested/steps.csv");
+  const std::vector<std::string> made = rows.column("partitioner");
+  int split_by = 0;
+  for (const PartitionerEntry& entry : partitioners()) {
+    const std::string name = entry.name;
+    if (!entry.unavailable.empty() || name == "file" || needs_groups(read_named("partitioner", name)))
+      continue;
+    EXPECT_GT(std::ranges::count(made, name), 0) << name;
+    ++split_by;
+  }
+  EXPECT_GE(split_by, 11);
+  for (const std::string& status : rows.column("status")) EXPECT_EQ(status, "ok");
+  EXPECT_EQ(run_cleave({"verify", *this / "nested"}).exit_code, 0);
 }
 
 }  // namespace

@@ -46,12 +46,13 @@ run(${CMAKE_COMMAND} --build ${WORK}/installed)
 expect(${WORK}/installed/partition_example "${PARTITION_PRINTS}")
 expect(${WORK}/installed/solver_example "${SOLVER_PRINTS}")
 
-# Of the sources only what the examples need is compiled; nothing of the program is looked for. SCOTCH may be absent. Flags
+# Of the sources only what the examples need is compiled; nothing of the program is looked for. METIS and SCOTCH may be absent. Flags
 # are those of whoever takes them in: here the ones that the compiler has done with soonest.
 run(${CONFIGURE} -B ${WORK}/taken_in -DCLEAVE_SOURCE_DIR=${SOURCE} -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0
     -DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=TRUE
     -DCMAKE_DISABLE_FIND_PACKAGE_HDF5=TRUE -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=TRUE
-    -DCMAKE_DISABLE_FIND_PACKAGE_GTest=TRUE -DCMAKE_DISABLE_FIND_PACKAGE_SCOTCH=TRUE)
+    -DCMAKE_DISABLE_FIND_PACKAGE_GTest=TRUE -DCMAKE_DISABLE_FIND_PACKAGE_SCOTCH=TRUE
+    -DCMAKE_DISABLE_FIND_PACKAGE_METIS=TRUE)
 run(${CMAKE_COMMAND} --build ${WORK}/taken_in --target partition_example solver_example)
 expect(${WORK}/taken_in/partition_example "${PARTITION_PRINTS}")
 expect(${WORK}/taken_in/solver_example "${SOLVER_PRINTS}")

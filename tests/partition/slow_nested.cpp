@@ -42,6 +42,7 @@ class SlowRecursion {
     if (is_leaf || static_cast<int>(members.size()) <= grown_.max_bodies) return set;
     const int most_bodies = static_cast<int>(std::ceil(static_cast<double>(members.size()) / arity_));
     const Partition parts = split_once(among(all, members), most_bodies);
+    if (parts.part_count == 1) return set;
     for (int part = 0; part < parts.part_count; ++part) {
       std::vector<int> child;
       for (std::size_t k = 0; k < members.size(); ++k)
