@@ -71,7 +71,7 @@ bool Attempts::run_chain(SolveState& state, std::span<const double> warm_impulse
 // Until the residual of the problem as it was asked, compliance zero, is at the target or falls no more. Between proximal
 // steps the active set mostly stays: then a step is a correction by the factor at hand.
 bool Attempts::run_proximal(SolveState& state) {
-  const double target = state.options.target_m_per_s * state.step->velocity_scale();
+  const double target = state.target_m_per_s();
   const double tolerance = state.violation_tolerance();
   proximal_best_.clear();
   if (!state.factor_free()) return false;

@@ -84,8 +84,11 @@ struct SolveState {
   // after: with the new w of a chunk.
   void correct_free(const RowWork& after = {});
 
-  // What a row may be violated by while an active set is looked for, m/s: a tenth of the residual aimed at.
-  double violation_tolerance() const { return 0.1 * options.target_m_per_s * step->velocity_scale(); }
+  // The residual aimed at, m/s.
+  double target_m_per_s() const { return options.target_m_per_s * step->velocity_scale(); }
+
+  // What a row may be violated by while an active set is looked for, m/s: a tenth of that.
+  double violation_tolerance() const { return 0.1 * target_m_per_s(); }
 
   // Most corrections of an answer of which only the violations are counted, and of one that stays.
   static constexpr int kSearchRefinements = 3, kLastRefinements = 2;

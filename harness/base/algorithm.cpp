@@ -50,6 +50,18 @@ void check_known(const std::string& option, const std::string& text, const Given
   }
 }
 
+// The text with fingerprints where it names files whose content counts.
+std::string known_text(const std::string& text, std::span<const Parameter> parameters, const Given& values) {
+  std::string known = algorithm_name(text);
+  for (const std::string& part : parts_of(text)) {
+    const std::string name = part.substr(0, part.find('='));
+    const auto row = std::ranges::find(parameters, name, &Parameter::name);
+    const bool is_file = row != parameters.end() && row->kind == Parameter::Kind::content;
+    known += "@" + (is_file ? name + "=" + values.at(name) : part);
+  }
+  return known;
+}
+
 }  // namespace
 
 std::string unavailable_text(const AlgorithmEntry& entry) {
@@ -94,7 +106,8 @@ Algorithm read_algorithm(const std::string& option, const std::string& text,
                          (parameter.kind == Parameter::Kind::path ? "FILE" : "VALUE") + way);
     }
   }
-  return {text, name, Settings(std::move(values))};
+  std::string known = known_text(text, parameters, values);
+  return {std::move(known), name, Settings(std::move(values))};
 }
 
 std::string text_with_content(const std::string& text, std::span<const Parameter> parameters,

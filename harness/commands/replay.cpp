@@ -73,9 +73,12 @@ std::string asks_for_series(const RunOptions& options) {
 void check_files(ReplayOptions& options) {
   std::string without_groups;
   std::string before;
+  std::set<fs::path> seen;
   std::tuple<std::string, std::uint64_t, int, int> last;
   for (const std::string& path : options.files) {
     ProblemFile file = read_problem_file_aloud(path);
+    if (!seen.insert(fs::weakly_canonical(path)).second)
+      throw std::invalid_argument("FILES: " + path + " is named twice");
     turn_friction(path, options.friction, file);
     const std::tuple now{file.scene, file.seed, file.problem.body_count(), file.step};
     if (const std::string option = asks_for_series(options.solve);

@@ -224,7 +224,7 @@ std::vector<OptionSpec> physics_options() {
              at(&RunOptions::stiffness_n_per_m)),
       number({"damping", kAbout, kWithWorld}, kNonNegative, "d in N s/m, with --stiffness",
              at(&RunOptions::damping_n_s_per_m)),
-      number({"gravity", kAbout, kWithWorld}, {}, "gravity along -z, m/s^2",
+      number({"gravity", kAbout, kWithWorld}, {-1e6, 1e6}, "gravity along -z, m/s^2",
              at(&RunOptions::gravity_m_per_s2)),
       integer({"contact-cap", kAbout, kWithWorld}, {1, 65535}, "most contact points of a geom pair",
               at(&RunOptions::contact_cap)),

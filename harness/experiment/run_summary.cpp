@@ -83,8 +83,8 @@ std::string RunSummary::text() const {
                     measured_steps);
   if (t_s_waiting_total_ms > kMostWaiting * t_s_total_ms)
     lines += format(
-        "the solves waited %.3g %% of their time for a core (%.3g of %.3g ms), used by others or by more "
-        "threads than there are cores\n",
+        "the solves waited %.3g %% of their time for a core (%.3g of %.3g ms, all threads together), used by "
+        "others or by more threads than there are cores\n",
         100 * t_s_waiting_total_ms / t_s_total_ms, t_s_waiting_total_ms, t_s_total_ms);
   if (t_s_far_ms > kMostFar * t_s_apart_total_ms)
     lines += format(

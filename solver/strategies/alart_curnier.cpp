@@ -214,7 +214,7 @@ bool AlartCurnier::attempt(SolveState& state, std::span<const double> start, lon
   for (long k = 0; k <= most; ++k) {
     const double residual = state.residual();
     if (residual < best_residual_) best_residual_ = residual, best_impulse_ = state.impulse;
-    if (residual <= state.options.target_m_per_s * state.step->velocity_scale()) return true;
+    if (residual <= state.target_m_per_s()) return true;
     if (k == most || !factor(state)) break;
     ++state.summary->iterations;
     step_.assign(error_.size(), 0.0);

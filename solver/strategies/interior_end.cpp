@@ -44,8 +44,7 @@ bool InteriorEnd::solve_rows(SolveState& state, const InteriorIterate& iterate, 
 }
 
 bool InteriorEnd::attempt(SolveState& state, const InteriorIterate& iterate) {
-  const double tolerance =
-      constants_.polish_accuracy * state.options.target_m_per_s * state.step->velocity_scale();
+  const double tolerance = constants_.polish_accuracy * state.target_m_per_s();
   kept_impulse_ = state.impulse;
   if (has_cones_ ? solve_cones(state, tolerance) : solve_rows(state, iterate, tolerance)) return true;
   state.load(kept_impulse_);

@@ -194,7 +194,7 @@ bool InteriorPoint::search_from_further_inside(SolveState& state) {
 
 // True where an attempt at the end has found the answer.
 bool InteriorPoint::search(SolveState& state) {
-  const double target = state.options.target_m_per_s * state.step->velocity_scale();
+  const double target = state.target_m_per_s();
   for (; iterations_left_ > 0 && !is_lost(); --iterations_left_) {
     double error = iterate_.error();
     const Progress progress = watch(state, error);

@@ -65,6 +65,26 @@ TEST(CostOptions, AnotherCalibrationIsAnotherRunAndAnotherChoice) {
   EXPECT_NE(rows.at(0, "calibration"), shipped.at(0, "calibration"));
   EXPECT_EQ(rows.at(0, "auto_choice"), "single+none/schur-rows");
   EXPECT_EQ(rows.at(0, "parts"), "1");
+
+  // In the partitioner's own text it is known by what is in the file too, wherever that lies.
+  const std::string fingerprint = rows.at(0, "calibration"), copy = directory / "copy.toml";
+  std::filesystem::copy_file(file, copy);
+  const auto named = [&](const std::string& path, const std::string& out) {
+    return rows_of({"--partitioner", "auto@calibration=" + path, "--refiner", "none"}, directory / out);
+  };
+  const CsvTable first = named(file, "first");
+  EXPECT_EQ(first.at(0, "partitioner"), "auto@calibration=" + fingerprint);
+  EXPECT_EQ(first.at(0, "calibration"), fingerprint);
+  EXPECT_EQ(named(copy, "second").column("run_id"), first.column("run_id"));
+  const Arguments again = {"run", "--config", directory / "first/manifest.json", "--out",
+                           directory / "again"};
+  const ProgramResult unnamed = run_cleave(again);
+  EXPECT_EQ(unnamed.exit_code, 1);
+  EXPECT_NE(unnamed.err.find(fingerprint + " is not the shipped one"), std::string::npos) << unnamed.err;
+  EXPECT_EQ(run_cleave(again + Arguments{"--partitioner", "auto@calibration=" + file}).exit_code, 0);
+  EXPECT_EQ(read_csv(directory / "again/steps.csv").column("run_id"), first.column("run_id"));
+  std::ofstream(copy, std::ios::app) << "\n";
+  EXPECT_NE(named(copy, "third").column("run_id"), first.column("run_id"));
 }
 
 // Two sources are the fewest: one to fit, one to hold out.

@@ -362,6 +362,7 @@ TEST_F(ReplayOfARun, MistakesAreNamedBeforeAnythingIsCreated) {
       {{"replay", good, "--steps", "3", "--out", out}, "--steps: no such option"},
       {{"replay", good, "--mu", "0.3", "--out", out}, "--mu: no such option"},
       {{"replay", good, copied, "--write-solutions", "--out", out}, "another file of this name"},
+      {{"replay", good, good, "--out", out}, "FILES: " + good + " is named twice"},
       {{"replay", good, "--out", *directory_ / "run"}, "already holds steps.csv"},
       {{"replay", good, "--write-solutions", "--force", "--out", *directory_ / "recorded"},
        "would replace it"},

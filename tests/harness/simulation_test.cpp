@@ -275,7 +275,8 @@ TEST(RunSummary, SaysWhenSolvesWaitedForACore) {
   EXPECT_EQ(summary.text().find("waited"), std::string::npos) << summary.text();
   row.t_s_waiting_ms = 25;
   summary.add(row);
-  EXPECT_NE(summary.text().find("the solves waited 20 % of their time for a core (30 of 150 ms)"),
+  EXPECT_NE(summary.text().find(
+                "the solves waited 20 % of their time for a core (30 of 150 ms, all threads together)"),
             std::string::npos)
       << summary.text();
 }

@@ -11,7 +11,8 @@ namespace {
 TEST(CleavePeers, ReplaysBesideOurs) {
   const auto list = run_program(CLEAVE_PEERS_PROGRAM, {"list", "solvers"});
   ASSERT_NE(list.out.find("bullet-dantzig"), std::string::npos) << list.err;
-  if (list.out.find("is not in this build") != std::string::npos) GTEST_SKIP() << "some library is absent";
+  // The list names each absent solver and what to install for it.
+  if (list.out.find("is not in this build") != std::string::npos) GTEST_SKIP() << list.out;
   const TemporaryDirectory directory;
   ProblemFile file;
   file.problem = make_pile(1, {.columns = 2, .rows = 1, .layers = 2, .cfm = 1e-4});

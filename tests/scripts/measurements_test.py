@@ -260,8 +260,8 @@ class PartitionWorthTest(Measurement):
 
     def test_every_step_meets_every_solver_and_partition(self):
         self.run_it()
-        self.assertEqual(len(self.calls()), 9 * (1 + 2 * 2))
-        self.assertEqual(len(self.rows("partition_worth.csv")), 9 * 2 * (3 * 15 + 10))
+        self.assertEqual(len(self.calls()), 12 * (1 + 2))
+        self.assertEqual(len(self.rows("partition_worth.csv")), 2 * 4 * (9 * 15 + 3 * (15 + 6) * 2))
         self.assertTrue((self.directory / "out" / "partition_worth.png").exists())
         self.assertIn("| rock pile, 50 bodies, 1200 rows, cfm 1e-05 | 8.10 (mindp, 10+fm) | 8.10 (mindp, 10+fm) | 8.10 (mindp, 10+fm) | "
                       "8.10 (mindp, 10+fm) | schur-rows, 1.98 | schur-rows, 7.36 | schur-rows, 7.36 |", worth.worth(self.stored()))
@@ -310,6 +310,19 @@ class PartitionWorthAnalysisTest(unittest.TestCase):
         self.assertEqual((problem.best["a", 1].partition, problem.best["a", 8].partition), ("bfs+fm", "mix+fm"))
         self.assertEqual((problem.speed_up("a", 8), problem.measured["a"].time_ms), (4 / 5, 6))
         self.assertEqual((problem.winner(1), problem.winner(64)), ("b", "b"))
+
+    def test_groups_are_held_against_parts_that_are_found(self):
+        def row(scene, partitioner, t_s_ms, threads=1):
+            return {"scene": scene, "bodies": 9, "cfm": 1e-5, "rows": 30, "solver": "a", "partitioner": partitioner, "refiner": "fm",
+                    "threads": threads, "t_pr_ms": 1, "t_s_ms": t_s_ms, "parts": 3, "interface_rows": 12}
+
+        found = partition_worth.kinds([row("s", "mix", 9), row("s", "bfs", 7), row("s", "semantic@split=whole", 5), row("s", "-", 1),
+                                       row("s", "semantic@split=chunks@max-bodies=9", 4), row("s", "semantic@split=whole", 1, 2), row("t", "mix", 1)])
+        (key, of_kind), = found.items()
+        self.assertEqual(key[0][0], "s")
+        self.assertEqual({kind: of.cell.time_ms for kind, of in of_kind.items()},
+                         {partition_worth.FOUND: 8, partition_worth.WHOLE: 6, partition_worth.RUNS: 5})
+        self.assertEqual(of_kind[partition_worth.FOUND].cell.partition, "bfs+fm")
 
 
 class AblationTest(Measurement):

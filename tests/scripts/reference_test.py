@@ -39,7 +39,7 @@ LEFT = {
     "friction_cost": ["friction_cost.csv"],
     "friction_models": ["friction_motion.csv", "friction_velocities.csv"], "coulomb_peers": ["coulomb_peers.csv"],
     "hidden_choices": ["hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv", "verdict_map.png"],
-    "tradeoff": ["tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "time_to_accuracy.png", "accuracy_profile.png"],
+    "tradeoff": ["tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "time_to_accuracy.png", "crossover.png", "accuracy_profile.png"],
     "cold_starts": ["cold_starts.csv"], "ablation": ["ablation.csv"], "report": ["figures/verdicts.csv"],
     "readme_figures": ["figure2.png"],
 }
@@ -120,7 +120,7 @@ class ReferenceTest(unittest.TestCase):
             "partition_benchmark.json",
             "dense_benchmark.json", "busy_machine.csv",
             "two_threads.csv", "karger.csv", "partition_over_time.csv", "partition_worth.csv", "partition_worth.png", "partition_regret.csv", "tradeoff.csv", "tradeoff_partitions.csv",
-            "tradeoff_motion.csv", "time_to_accuracy.png", "accuracy_profile.png", "model_savings.csv", "campaign_costs.csv", "friction_cost.csv", "friction_motion.csv", "friction_velocities.csv", "coulomb_peers.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
+            "tradeoff_motion.csv", "time_to_accuracy.png", "crossover.png", "accuracy_profile.png", "model_savings.csv", "campaign_costs.csv", "friction_cost.csv", "friction_motion.csv", "friction_velocities.csv", "coulomb_peers.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
             "verdict_map.png", "modelled_workers.csv", "running_simulation.csv", "large_scenes.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
             "report/verdicts.csv", *(f"report/{run}/{file}" for run in ("scaling/bodies_50", "one_thread/rock_pile")
                                      for file in ("manifest.json", "steps.csv", "checksums")),

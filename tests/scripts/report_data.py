@@ -9,6 +9,7 @@ from cleave_scripts.results.paper import PARTITIONERS, REFINERS, SCENES, load_pa
 
 PAPER = load_paper_table1()
 STEPS = range(9, 90, 10)
+OF_TRADEOFF = ("time_to_accuracy", "crossover", "accuracy_profile")  # figures of another script's table
 STAGES = ("analyze", "factor_local", "factor_interface")
 
 
@@ -114,6 +115,19 @@ def write_tree(directory):
                   whole_system("pgs", t_s_ms=sweeps / 10, residual_m_per_s=residual, status="not_converged"),
                   sweeps=sweeps)
     write_ladder(directory)
+    write_tradeoff(directory)
+
+
+def write_tradeoff(directory):
+    """Piles of three sizes, two compliances and two mass ratios."""
+    lines = ["series,scene,bodies,mass_ratio,cfm,step,rows,solver,partitioner,refiner,iterations,residual_m_per_s,largest_free_velocity_m_per_s,"
+             "t_pr_ms,t_s_ms,status"]
+    for bodies, mass_ratio, cfm in ((50, 1, 1e-6), (100, 1, 1e-6), (200, 1, 1e-6), (200, 1, 1e-8), (200, 100, 1e-6)):
+        pile = f"paper,rock_pile,{bodies},{mass_ratio},{cfm},200,{10 * bodies}"
+        lines.append(f"{pile},exact,-,-,9,1e-13,1,nan,{bodies / 50},ok")
+        for power in range(1, 6):
+            lines.append(f"{pile},pgs@until=1e-{power}@sweeps=3000,-,-,{10 * power},9e-{power + 1},1,nan,{power * bodies / 100},not_converged")
+    (directory / "tradeoff.csv").write_text("\n".join(lines) + "\n")
 
 
 def write_ladder(directory):

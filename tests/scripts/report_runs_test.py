@@ -4,6 +4,7 @@ import pathlib
 import tempfile
 import unittest
 
+from report_data import OF_TRADEOFF
 from synthetic import PROGRAM, ROOT, SCRIPTS, run_script
 
 from cleave_scripts.figures import data, style
@@ -82,7 +83,7 @@ class ReportRunsTest(unittest.TestCase):
         self.assertEqual({scene: blocks[0].experiment.name for scene, blocks in loaded.main.items()},
                          {scene: f"paper/{scene}" for scene in SCENES})
         for figure in FIGURES:
-            if figure.name not in ("ladder", "verdict_map"):
+            if figure.name not in ("ladder", "verdict_map", *OF_TRADEOFF):
                 picture, caption = figure.draw(loaded)
                 style.pyplot.close(picture)
                 self.assertNotIn("No data", caption, figure.name)

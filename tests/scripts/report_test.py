@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 import matplotlib.image
-from report_data import PAPER, manifest, report_row, rows_of, whole_system, write_run, write_tree
+from report_data import OF_TRADEOFF, PAPER, manifest, report_row, rows_of, whole_system, write_run, write_tree
 from synthetic import run_script, write_manifest, write_steps
 
 from cleave_scripts.figures import data, kernel_value, looks, solver_groups, style, times_by_step, trade_off, tree
@@ -75,9 +75,9 @@ class WholeTreeTest(TreeTest):
         write_tree(self.directory)
         for name, caption in self.drawn().items():
             self.assertIsInstance(caption, str, name)
-            if name not in ("ladder", "verdict_map"):
+            if name not in ("ladder", "verdict_map", *OF_TRADEOFF):
                 self.assertRegex(caption, r"Some_CPU, 6 cores, 1 thread", name)
-            if name not in ("ladder", "speed_up", "verdict_map"):
+            if name not in ("ladder", "speed_up", "verdict_map", *OF_TRADEOFF):
                 self.assertRegex(caption, r"Measured steps: .* 9[.,]", name)
 
     def test_the_same_data_give_the_same_files(self):
@@ -300,12 +300,13 @@ class DamageTest(TreeTest):
         write_steps(self.directory / "bad_manifest", rows_of("chain_drop", steps=(9,)))
         (self.directory / "bad_manifest" / "manifest.json").write_text("{")
         (self.directory / "ladder.csv").write_text("rung,value\n1,2\n")
+        (self.directory / "tradeoff.csv").write_text("series,scene\npaper,rock_pile\n")
         page, said = self.report()
         for words in ("empty/steps.csv: empty file", "header/steps.csv: missing column partitioner",
                       "words/steps.csv: missing column scene", "binary/steps.csv: not a text file",
                       "no_rows/steps.csv: no rows", "half/steps.csv: the last line was not finished",
                       "the state of the run is running", "bad_manifest/manifest.json",
-                      "ladder.csv: missing column parameter"):
+                      "ladder.csv: missing column parameter", "tradeoff.csv: missing column bodies"):
             self.assertIn(words, said)
             self.assert_has(page, words)
         self.assertTrue((self.directory / "figures" / "figure3.png").exists())

@@ -109,10 +109,11 @@ TEST(SchurNestedTest, OneLevelIsSchurBodies) {
   EXPECT_EQ(solved("pivot:schur-nested", problem, Parts(parts, star)).impulse, bodies.impulse);
 }
 
-TEST(BranchKernelTest, GivesTheSameBytesOnAnyNumberOfThreadsInAnyOrder) {
+TEST(KernelsTest, GiveTheSameBytesOnAnyNumberOfThreadsInAnyOrder) {
   const StepProblem problem = pile(1e-5, 6);
   const Tree tree = sliced_tree(problem.body_count(), 9);
-  for (const char* solver : {"exact", "pivot:schur-bodies", "interior-point:schur-nested"}) {
+  for (const char* solver :
+       {"exact", "schur", "interior-point:schur-rows", "pivot:schur-bodies", "interior-point:schur-nested"}) {
     const Solution one = solved(solver, problem, tree.parts());
     for (const int threads : {1, 2, 3, 7}) {
       for (const int seed : {0, 1}) {

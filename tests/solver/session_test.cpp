@@ -150,6 +150,47 @@ TEST_F(CarriedFactorTest, IsMadeAnewWhereItIsWrong) {
   }
 }
 
+// Pivots, and ends above the limit where it had a carried factor alone, as one would that is wrong in a way which conjugate
+// gradients do not tell.
+class SpoiltByCarriedFactor : public Strategy {
+ public:
+  explicit SpoiltByCarriedFactor(int& spoilt) : spoilt_(spoilt) {}
+  bool run(SolveState& state) override {
+    const bool solved = pivot_->run(state);
+    const CarriedFactor::Counts& counts = dynamic_cast<CarriedFactor&>(*state.kernel).counts();
+    if (counts.factor_reuses == 0 || counts.factorizations > 0) return solved;
+    for (double& impulse : state.impulse) impulse += 1;
+    state.update_velocity();
+    ++spoilt_;
+    return false;
+  }
+
+ private:
+  std::unique_ptr<Strategy> pivot_ = make_pivot(Settings());
+  int& spoilt_;
+};
+
+// Under the name of a strategy that hands over to no other.
+TEST(SessionFactorTest, IsMadeAnewWhereItsAnswerIsAboveTheLimit) {
+  int spoilt = 0, seen = 0;
+  const auto solver = make_direct_solver("interior-point", "monolithic", {.session = true}, Settings(),
+                                         std::make_unique<SpoiltByCarriedFactor>(spoilt));
+  const StepProblem first = make_chain(3, {.links = 200, .extra_joints = 2000});  // dear to factor
+  const std::vector<int> parts = single_part(first.body_count());
+  SeededRandom random(5);
+  Solution solution = cold_start(first);
+  for (int step = 0; step < 6; ++step) {
+    const StepProblem problem = step == 0 ? first : moved(first, solution, 1e-9, random);
+    solution.impulse = problem.warm_impulse;
+    const SolveSummary summary = solver->solve(problem, parts, solution);
+    EXPECT_TRUE(is_exact(problem, summary, solution)) << "step " << step;
+    EXPECT_EQ(summary.fallbacks, spoilt - seen) << "step " << step;
+    EXPECT_TRUE(spoilt == seen || summary.factorizations > 0) << "step " << step;
+    seen = spoilt;
+  }
+  EXPECT_GE(spoilt, 3);
+}
+
 // Factors, but for the step of which only rows are given; and from then on anew.
 class FactorsLate : public Strategy {
  public:

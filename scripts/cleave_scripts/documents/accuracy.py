@@ -6,6 +6,7 @@ import statistics
 from cleave_scripts.documents.stored import need
 from cleave_scripts.measurements import model_savings as savings_of
 from cleave_scripts.measurements import partitions_of_solvers as parts_of
+from cleave_scripts.measurements.crossover import AXES, LIMITS as CROSSED, exact_is_faster
 from cleave_scripts.measurements.accuracy import EXACT, LEAST_SWEEPS, problems, sweep_costs
 from cleave_scripts.table import text
 
@@ -20,16 +21,15 @@ def _against(problem, limit):
     method, time_ms = problem.fastest(limit, problem.iterative)
     if math.isinf(time_ms):
         return "never"
-    return f"{text.number(time_ms / problem.time_ms(EXACT, limit))} ({method})"
+    return f"{text.number(problem.against_exact(limit))} ({method})"
 
 
 def time_to_accuracy(stored):
     rows = need(stored.table(*TIMES), "time to accuracy", "status")
     lines = []
     for problem in problems(rows):
-        scene, bodies, cfm, _ = problem.key
         crossover = problem.crossover()
-        lines.append([f"{scene.replace('_', ' ')}, {bodies} bodies, {problem.rows} rows, cfm {float(cfm):g}",
+        lines.append([problem.title,
                       text.number(problem.time_ms(EXACT, SHOWN[-1])), *(_against(problem, limit) for limit in SHOWN),
                       text.power(crossover) if crossover else "none"])
     return (f"t_s of `{EXACT}`, ms, one thread, on recorded steps; then the fastest of the solvers that iterate, told to stop at a residual (m/s "
@@ -37,6 +37,31 @@ def time_to_accuracy(stored):
             f"it was given; last the largest residual from which on down `{EXACT}` is faster than all of them "
             f"(`{COMMAND}`; {stored.origin(TIMES[0])}):\n\n" +
             text.table(["", f"`{EXACT}`, ms", *map(text.power, SHOWN), "`exact` faster from"], lines))
+
+
+def _ranges(axis, problems_on_axis, limit):
+    """Where exact is faster, in words."""
+    found = exact_is_faster([(axis.of(problem), problem.against_exact(limit)) for problem in problems_on_axis])
+    said = []
+    for start, end in found:
+        if start is None and end is None:
+            return "all"
+        said.append(f"from {text.number(start)}" if end is None else
+                    f"to {text.number(end)}" if start is None else f"{text.number(start)} to {text.number(end)}")
+    return ", ".join(said) or "none"
+
+
+def crossover(stored):
+    """Where along an axis exact overtakes what iterates."""
+    found = problems(need(stored.table(*TIMES), "crossovers", "series"))
+    lines = []
+    for axis in AXES:
+        on_axis = axis.problems(found)
+        span = f"{text.number(axis.of(on_axis[0]))} to {text.number(axis.of(on_axis[-1]))}"
+        lines.append([f"{axis.label}, {span} ({axis.title})", *(_ranges(axis, on_axis, limit) for limit in CROSSED)])
+    return (f"Where `{EXACT}` is faster than every solver that iterates, on rock piles of which one thing changes, by the residual those were told to "
+            f"stop at; between measured values by straight lines in logarithms (`{COMMAND}`; {stored.origin(TIMES[0])}):\n\n" +
+            text.table(["", *map(text.power, CROSSED)], lines))
 
 
 def sweep_cost(stored):
@@ -60,11 +85,11 @@ def motion(stored):
         mean_ms.setdefault((row["scene"], row["mover"]), []).append(float(row["t_s_ms"]))
     lines = [[scene.replace("_", " "), mover, text.number(sum(mean_ms[scene, mover]) / len(mean_ms[scene, mover])),
               text.number(float(row["residual_m_per_s"])), text.number(1000 * float(row["max_penetration_m"])),
-              text.number(1000 * float(row["joint_drift_m"])), text.number(float(row["kinetic_energy_j"]) / 1000),
+              text.number(1000 * float(row["joint_drift_m"])), text.number(float(row["height_m"])), text.number(float(row["kinetic_energy_j"]) / 1000),
               text.number(float(row["potential_energy_j"]) / 1000)] for (scene, mover), row in last.items()]
     return (f"Scenes that one solver alone has moved, at the end (`{COMMAND}`; {stored.origin(MOTION[0])}). t_s is the mean of the measured steps, of one "
-            "substep where a step has several:\n\n" +
-            text.table(["scene", "moved by", "t_s, ms", "residual, m/s", "penetration, mm", "joint drift, mm", "kinetic energy, kJ",
+            "substep where a step has several; height is that of the highest centre:\n\n" +
+            text.table(["scene", "moved by", "t_s, ms", "residual, m/s", "penetration, mm", "joint drift, mm", "height, m", "kinetic energy, kJ",
                         "potential energy, kJ"], lines))
 
 
@@ -99,4 +124,4 @@ def model_savings(stored):
             text.table(["", "`full`, ms", "`auto`", "over steps", "left out", "at rest", "brought back", "difference, m/s"], lines))
 
 
-BLOCKS = {"model_savings": model_savings, "time_to_accuracy": time_to_accuracy, "sweep_cost": sweep_cost, "motion": motion, "iterative_partitions": iterative_partitions}
+BLOCKS = {"model_savings": model_savings, "time_to_accuracy": time_to_accuracy, "crossover": crossover, "sweep_cost": sweep_cost, "motion": motion, "iterative_partitions": iterative_partitions}

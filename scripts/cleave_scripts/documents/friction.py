@@ -29,8 +29,8 @@ def friction_velocities(stored):
             lines.append([scene.replace("_", " "), model, f"{len(held)} of {len(mine)}",
                           *(text.number(number) if held else "-" for of in (shares, most)
                             for number in ((statistics.median(of), max(of)) if held else (0, 0)))])
-    return (f"Recorded steps of the scenes, solved by `exact` under `box` and `cone`, held against Coulomb's law in the same step, where both were "
-            f"solved: root mean square over the bodies of the difference of their velocities, as a share of the velocities' own, and the "
+    return (f"Recorded steps of the scenes, solved by `exact` under `box` and `cone`, and others with the bounds that `box-converged` ended on where it moved "
+            f"the scene, held against Coulomb's law in the same step, where both were solved: root mean square over the bodies of the difference of their velocities, as a share of the velocities' own, and the "
             f"largest difference of one body (`{MADE_BY}`; {stored.origin(VELOCITIES[0])}):\n\n" +
             text.table(["scene", "model", "steps", "difference, %, median", "most", "one body, m/s, median", "most"], lines))
 

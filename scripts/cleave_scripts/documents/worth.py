@@ -26,8 +26,12 @@ def over_time(stored):
             f"with a constraint ({stored.origin(OVER_TIME[0])}):\n\n" + text.table(["", "t_pr / t_s", *rules], lines))
 
 
+def _partition(cell):
+    return cell.partition.replace("@effort=best", ", best").replace("@split=", ", ").replace("@max-bodies=", ", ")
+
+
 def _worth_cell(cell):
-    return text.number(cell.time_ms) + ("" if cell.partition == "-" else f" ({cell.partition.replace('@effort=best', ', best').replace('@max-bodies=', ', ')})")
+    return text.number(cell.time_ms) + ("" if cell.partition == "-" else f" ({_partition(cell)})")
 
 
 def _winner(problem, workers):
@@ -52,6 +56,22 @@ def worth(stored):
             text.table(["", *partition_worth.NAMES.values(), "two threads", *(f"{workers} workers" for workers in SHOWN_WORKERS)], lines))
 
 
+def _kind_cell(kind):
+    parts = "one part" if kind.parts == 1 else f"{kind.parts} parts, {kind.interface_rows} interface rows"
+    return f"{text.number(kind.cell.time_ms)} ({_partition(kind.cell)}: {parts})"
+
+
+def semantic(stored):
+    """Parts after the groups that a scene names against parts that are found."""
+    found = partition_worth.kinds(need(stored.table(*WORTH), "semantic parts", "parts"))
+    kinds = (partition_worth.WHOLE, partition_worth.RUNS, partition_worth.FOUND)
+    lines = [[f"{scene.replace('_', ' ')}, {bodies} bodies, {rows} rows", partition_worth.NAMES[solver], *(_kind_cell(of_kind[kind]) for kind in kinds)]
+             for ((scene, bodies, _), rows, solver), of_kind in found.items()]
+    return (f"Least t_pr + t_s, ms, one thread, of parts after the groups of bodies that the scene names (`semantic`: whole, and cut into runs) and of all "
+            f"parts that are found from the graph, each with its best size and refiner (`{WORTH[1]}`; {stored.origin(WORTH[0])}):\n\n" +
+            text.table(["", "kernel", *kinds], lines))
+
+
 def regret_of_auto(stored):
     """auto against the best cell of its grid."""
     found = regret.regrets(need(stored.table(*REGRET), "auto", "auto_choice"))
@@ -62,4 +82,4 @@ def regret_of_auto(stored):
             text.table(["", "best cell", "its time", regret.BASELINE, "auto", "regret", "auto chose", "holds"], lines))
 
 
-BLOCKS = {"over_time": over_time, "worth": worth, "regret": regret_of_auto}
+BLOCKS = {"over_time": over_time, "worth": worth, "semantic": semantic, "regret": regret_of_auto}

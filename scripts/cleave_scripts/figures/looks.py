@@ -105,6 +105,11 @@ def tint(base, strength):
     return tuple(1 - strength * (1 - part) for part in matplotlib.colors.to_rgb(base))
 
 
+def shades(count):
+    """As many tints of the first colour, from light to full."""
+    return [tint(CYCLE[0], 0.3 + 0.7 * place / max(1, count - 1)) for place in range(count)]
+
+
 def _rank(refiner):
     return 0 if refiner == NO_PARTITIONER else _refiners.of(refiner)
 

@@ -1,7 +1,10 @@
-"""Time against the residual asked for, a panel a problem, and how often each solver is how near to the fastest."""
+"""Time against the residual asked for, a panel a problem; where the exact solver overtakes the others; and how often each solver is how near to
+the fastest."""
 import math
 
 from cleave_scripts.figures import looks, style
+from cleave_scripts.figures.tree import NoData
+from cleave_scripts.measurements import crossover
 from cleave_scripts.measurements.accuracy import EXACT, LIMITS, failures, profile
 from cleave_scripts.table import text
 
@@ -12,14 +15,41 @@ SPECIAL = {EXACT: {"color": looks.WHOLE_SYSTEM, "linewidth": 2.2, "zorder": 4}}
 
 def _methods(found):
     marks = looks.marks(dict.fromkeys(method for problem in found for method in problem.times_ms))
-    return {method: {"linewidth": 0.9, **look, **SPECIAL.get(method, {})} for method, look in marks.items()}
+    return {method: {"linewidth": 0.9, "linestyle": looks.LINES[place // len(looks.CYCLE)], **look, **SPECIAL.get(method, {})}
+            for place, (method, look) in enumerate(marks.items())}
 
 
 def _power(axis):
     axis.set_major_formatter(style.matplotlib.ticker.FuncFormatter(lambda value, _: text.power(value)))
 
 
+def _measured(data):
+    if data.tree.accuracy is None:
+        raise NoData("no tradeoff.csv with rows; scripts/tradeoff writes one")
+    return data.tree.accuracy
+
+
+def times(data):
+    """Figure of the report, with its caption."""
+    return draw_times(_measured(data)), (
+        "Recorded steps, soft and stiff, one thread. A solver that iterates was told to stop at each residual (divided by the largest free velocity where "
+        "that is above 1 m/s) and is drawn as far as it got; what factors has one time for all residuals that it reaches.")
+
+
+def crossovers(data):
+    return draw_crossover(_measured(data)), (
+        f"Rock piles of which one thing changes: time of the fastest solver that iterates over that of {EXACT}, by the residual it was told to stop at. "
+        f"Above 1 {EXACT} is faster; a point at the upper edge stands for never.")
+
+
+def profiles(data):
+    return draw_profiles(_measured(data)), (
+        "Share of the recorded steps that a solver takes to a residual in so many times the time of the fastest (Dolan and More, Mathematical "
+        "Programming 91, 2002). In the legend: on how many steps it never got to 1e-2, 1e-4, 1e-6 and 1e-8 m/s.")
+
+
 def draw_times(found):
+    found = [problem for problem in found if problem.is_drawn]
     figure, axes = style.panels(len(found), 3, 2.0, sharex=True)
     looked = _methods(found)
     for ax, problem in zip(axes, found):
@@ -27,8 +57,7 @@ def draw_times(found):
             reached = [limit for limit in LIMITS if not math.isinf(times[limit])]
             ax.plot(reached, [times[limit] for limit in reached],
                     **looked[method], markersize=2.6)
-        scene, bodies, cfm, _ = problem.key
-        ax.set_title(f"{scene.replace('_', ' ')}, {bodies} bodies\n{problem.rows} rows, cfm {float(cfm):g}", fontsize=7.5)
+        ax.set_title(f"{problem.scene.replace('_', ' ')}, {problem.bodies} bodies\n{problem.rows} rows, cfm {problem.cfm:g}", fontsize=7.5)
         ax.set(xscale="log", yscale="log", xlabel="residual, m/s", ylabel="$t_{pr} + t_s$, ms")
         ax.set_xlim(2 * LIMITS[0], LIMITS[-1] / 2)
         ax.set_xticks(LIMITS[::2])
@@ -36,6 +65,29 @@ def draw_times(found):
         ax.xaxis.set_minor_locator(style.matplotlib.ticker.NullLocator())
         ax.yaxis.set_major_formatter(style.matplotlib.ticker.FuncFormatter(lambda value, _: style.short(value)))
     style.legend_above(figure, _lines(looked), columns=4)
+    return figure
+
+
+def draw_crossover(found):
+    """The fastest solver that iterates as a multiple of exact, a panel an axis and a line a limit; at the upper edge where none got there."""
+    figure, axes = style.panels(len(crossover.AXES), 3, 2.6, sharey=True)
+    colours = looks.shades(len(crossover.LIMITS))
+    points = {axis: axis.problems(found) for axis in crossover.AXES}
+    ratios = [problem.against_exact(limit) for on_axis in points.values() for problem in on_axis for limit in crossover.LIMITS]
+    top = 2 * max((ratio for ratio in ratios if not math.isinf(ratio)), default=1)
+    for ax, axis in zip(axes, crossover.AXES):
+        ax.set_title(axis.title, fontsize=7.5)
+        ax.set_xlabel(axis.label)
+        if not points[axis]:
+            continue  # nothing that a logarithm could be taken of
+        for limit, colour in zip(crossover.LIMITS, colours):
+            ax.plot([axis.of(problem) for problem in points[axis]],
+                    [min(problem.against_exact(limit), top) for problem in points[axis]], color=colour, marker="o", markersize=3)
+        ax.axhline(1, color=style.INK, linewidth=0.8)
+        ax.set(xscale="log", yscale="log")
+    axes[0].set_ylabel("fastest that iterates over exact,\n$t_s$ (above 1 exact is faster)")
+    style.legend_above(figure, [style.matplotlib.lines.Line2D([], [], color=colour, marker="o", markersize=3, label=f"to {text.power(limit)} m/s")
+                                for limit, colour in zip(crossover.LIMITS, colours)], columns=len(colours))
     return figure
 
 
@@ -53,8 +105,8 @@ def draw_profiles(found):
             failed[method].append(f"{failures(ratios)}")
             inside = [ratio for ratio in ratios if ratio <= WIDEST]
             shares = [(place + 1) / len(ratios) for place in range(len(inside))]
-            ax.step([1, *inside, WIDEST], [0, *shares, max(shares, default=0)], where="post", color=looked[method]["color"],
-                    linewidth=looked[method]["linewidth"])
+            ax.step([1, *inside, WIDEST], [0, *shares, max(shares, default=0)], where="post",
+                    **{name: looked[method][name] for name in ("color", "linewidth", "linestyle")})
         ax.set(xscale="log", xlabel="times the fastest", ylabel="share of the problems", ylim=(-0.03, 1.03))
         ax.set_title(f"residual {text.power(limit)} m/s")
     texts = {method: f"{method} (never: {'/'.join(counts)})" for method, counts in failed.items()}

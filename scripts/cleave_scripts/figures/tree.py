@@ -5,6 +5,7 @@ import pathlib
 
 import pandas
 
+from cleave_scripts.measurements import accuracy
 from cleave_scripts.ladder.cells import CAMPAIGN as LADDER_CAMPAIGN
 from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.campaign import run_files_below
@@ -24,6 +25,7 @@ NOT_MEASURED = ("", "-", "nan", "inf", "-inf")
 PARTS = ("options", "option_about", "build", "machine", "result")  # of a manifest, each an object
 
 
+TRADEOFF_FILE = "tradeoff.csv"
 CLAIMS_FILE, COUNTS = "hidden_choices_claims.csv", ("holds", "fails", "cannot_tell")
 
 
@@ -47,15 +49,16 @@ class Tree:
     experiments: list
     ladder: object  # data frame of ladder.csv, or None
     claims: object  # of hidden_choices_claims.csv, or None
+    accuracy: object  # problems of tradeoff.csv (measurements/accuracy.py), or None
     messages: list  # what the reader of the report has to know, one line each
 
 
 def read_tree(directory):
-    """Everything below a directory: any number of steps.csv, and one ladder.csv; in it, what is known of hidden choices."""
+    """Everything below a directory: any number of steps.csv, and one ladder.csv; in it, what is known of hidden choices and of the price of accuracy."""
     directory = pathlib.Path(directory)
     if not directory.is_dir():
         raise ResultError(f"{directory}: no such directory")
-    tree = Tree(directory, [], None, None, [])
+    tree = Tree(directory, [], None, None, None, [])
     found = run_files_below(directory, "steps.csv", lambda error: tree.messages.append(f"{error}; its cells are left out"))
     steps = [(name, path) for name, path in found if LADDER_CAMPAIGN not in path.parts]  # whose runs ladder.csv judges
     ladders = sorted(directory.rglob("ladder.csv"))
@@ -71,6 +74,9 @@ def read_tree(directory):
     claims = directory / CLAIMS_FILE
     if claims.is_file():
         tree.claims = _attempt(tree, _read_claims, claims)
+    tradeoff = directory / TRADEOFF_FILE
+    if tradeoff.is_file():
+        tree.accuracy = _attempt(tree, _read_accuracy, tradeoff)
     return tree
 
 
@@ -148,6 +154,13 @@ def _read_ladder(path, tree):
     rows, notes = load_steps(path, ("rung", "parameter", "value", "solver", "status"))
     tree.messages += notes
     return pandas.DataFrame(rows) if rows else None
+
+
+def _read_accuracy(path, tree):
+    """Problems of what scripts/tradeoff wrote."""
+    rows, notes = load_steps(path, accuracy.COLUMNS)
+    tree.messages += notes
+    return accuracy.problems(rows) or None
 
 
 def _read_claims(path, tree):

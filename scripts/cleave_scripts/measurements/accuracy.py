@@ -7,20 +7,49 @@ for all limits that its residual meets. Where no solve is within a limit the tim
 import dataclasses
 import math
 
-KEY = ("scene", "bodies", "cfm", "step")
+KEY = ("series", "scene", "bodies", "mass_ratio", "cfm", "step")
+COLUMNS = (*KEY, "rows", "solver", "partitioner", "refiner", "iterations", "residual_m_per_s", "largest_free_velocity_m_per_s", "t_pr_ms",
+           "t_s_ms", "status")
+DRAWN = ("paper", "mechanisms")  # series with a panel a problem
 LIMITS = tuple(10.0**-power for power in range(1, 9))
 EXACT = "exact"
 LEAST_SWEEPS = 100
-BUDGET = ("until", "sweeps")  # parameters that say how long to go on, not what is done
+REFUSES = "lemke-max-rows"
+BUDGET = ("until", "sweeps", "quickstep-iterations")  # parameters that say how long to go on, not what is done
 
 
 @dataclasses.dataclass(frozen=True)
 class Problem:
-    """One recorded step. times_ms: {method: {limit: ms, infinite for never}}; iterative: methods that were given limits."""
+    """One recorded step. times_ms: {method: {limit: ms, infinite for never}}; iterative: methods that were told how long to go on."""
     key: tuple
     rows: int
     times_ms: dict
     iterative: tuple
+
+    @property
+    def scene(self):
+        return self.key[KEY.index("scene")]
+
+    @property
+    def bodies(self):
+        return int(self.key[KEY.index("bodies")])
+
+    @property
+    def mass_ratio(self):
+        return float(self.key[KEY.index("mass_ratio")])
+
+    @property
+    def cfm(self):
+        return float(self.key[KEY.index("cfm")])
+
+    @property
+    def is_drawn(self):
+        return self.key[KEY.index("series")] in DRAWN
+
+    @property
+    def title(self):
+        ratio = f", mass ratio {self.mass_ratio:g}" if self.mass_ratio != 1 else ""
+        return f"{self.scene.replace('_', ' ')}, {self.bodies} bodies{ratio}, {self.rows} rows, cfm {self.cfm:g}"
 
     def time_ms(self, method, limit):
         return self.times_ms[method][limit]
@@ -29,11 +58,15 @@ class Problem:
         """(method, ms) of the first fastest of these."""
         return min(((method, self.time_ms(method, limit)) for method in methods), key=lambda pair: pair[1])
 
+    def against_exact(self, limit):
+        """The fastest of those that iterate, as a multiple of EXACT: infinite where none gets there."""
+        return self.fastest(limit, self.iterative)[1] / self.time_ms(EXACT, limit)
+
     def crossover(self):
         """The largest limit from which on down EXACT is faster than all that iterate; None where it is not even at the last."""
         found = None
         for limit in reversed(LIMITS):
-            if self.time_ms(EXACT, limit) > self.fastest(limit, self.iterative)[1]:
+            if self.against_exact(limit) < 1:
                 break
             found = limit
         return found
@@ -42,7 +75,7 @@ class Problem:
 def method_of(row):
     """A solver's text without its budget, and the parts it was given."""
     name, *parameters = row["solver"].split("@")
-    kept = [text for text in parameters if text.partition("=")[0] not in BUDGET]
+    kept = [text for text in parameters if text.partition("=")[0] not in (*BUDGET, REFUSES)]
     parts = "" if row["partitioner"] == "-" else f", {row['partitioner']}+{row['refiner']}"
     return "@".join([name, *kept]) + parts
 
@@ -72,7 +105,7 @@ def problems(rows):
         count, times, iterative = found.setdefault(tuple(row[name] for name in KEY), (int(row["rows"]), {}, {}))
         method = method_of(row)
         reached = times.setdefault(method, dict.fromkeys(LIMITS, math.inf))
-        if "@until=" in row["solver"]:
+        if any(f"@{name}=" in row["solver"] for name in BUDGET):
             iterative[method] = True
         for limit in LIMITS:
             if _relative_residual(row) <= limit:

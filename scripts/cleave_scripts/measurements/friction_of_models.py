@@ -11,8 +11,11 @@ from cleave_scripts.results.programs import record, run
 from cleave_scripts.results.steps import load_steps
 
 MODELS = ("box", "box-converged", "cone", "coulomb")
-IN_A_STEP = ("box", "cone")  # held against LAW in the same recorded step; what moves a scene converges its bounds in passes of its own
-LAW = "coulomb"
+CONVERGED, LAW = "box-converged", "coulomb"
+# Models that are held against LAW in the same recorded steps, by the model that moved the scene there. Bounds converge while a scene is
+# moved, and files hold them: those steps are of another motion.
+MOVED_BY = {"box": ("box", "cone"), CONVERGED: (CONVERGED,)}
+IN_A_STEP = tuple(model for models in MOVED_BY.values() for model in models)
 RUN_OUT_SHARE = 0.95  # of the mass
 MEASURED = 10  # times a motion
 EXACT = ("--solver", "exact", "--repeats", 1)
@@ -64,14 +67,19 @@ def velocity_rows(program, scratch, steps, scenes=SCENES):
     every = max(1, steps // MEASURED)
     at = range(every, steps, every)
     for scene in scenes:
-        say(f"{scene}: one step under every model")
-        files = record(program, scratch / "steps", scene, at, "--advance", "exact")
-        solved = {model: _solved(program, scratch / model, files, model) for model in (*IN_A_STEP, LAW)}
-        for file in files:
-            law_row, law = solved[LAW][file.name]
-            for model in IN_A_STEP:
-                row, velocity = solved[model][file.name]
-                yield {**row, "friction": model, "status_of_law": law_row["status"], **_differences(velocity, law)}
+        for moved_by, models in MOVED_BY.items():
+            say(f"{scene} moved under {moved_by}: one step under {', '.join(models)} and {LAW}")
+            files = record(program, scratch / "steps", scene, at, "--advance", "exact", "--friction", moved_by, all_ok=False)
+            yield from _differences_of(program, scratch, files, models)
+
+
+def _differences_of(program, scratch, files, models):
+    solved = {model: _solved(program, scratch / model, files, model) for model in (*models, LAW)}
+    for file in files:
+        law_row, law = solved[LAW][file.name]
+        for model in models:
+            row, velocity = solved[model][file.name]
+            yield {**row, "friction": model, "status_of_law": law_row["status"], **_differences(velocity, law)}
 
 
 def _differences(velocity, law):
@@ -85,8 +93,9 @@ def _rms(values):
 
 
 def _solved(program, directory, files, model):
-    """{name of file: (row, velocities)}"""
-    run([program, "replay", *files, *EXACT, "--friction", model, "--write-solutions", "--out", directory, "--force"], allowed=(0, 2))
+    """{name of file: (row, velocities)}; of CONVERGED as recorded."""
+    friction = () if model == CONVERGED else ("--friction", model)
+    run([program, "replay", *files, *EXACT, *friction, "--write-solutions", "--out", directory, "--force"], allowed=(0, 2))
     rows = load_steps(directory / "steps.csv")[0]
     return {file.name: (row, _velocity(directory / file.name)) for file, row in zip(files, rows, strict=True)}
 

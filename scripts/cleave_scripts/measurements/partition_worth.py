@@ -2,13 +2,15 @@
 
 The time of a cell is t_pr + t_s: on one thread and on two as measured, on more workers as modelled from the one-thread solve. Of
 every solver the fastest partition counts, for each number of workers anew. Speed-ups are against the fastest solver on one
-thread.
+thread. Where a scene names groups of bodies, parts after them are held against those that are found.
 """
 import dataclasses
 
 KEY = ("scene", "bodies", "cfm")
 MODELLED = (2, 4, 8, 16, 32, 64)
 WORKERS = (1, *MODELLED)
+SEMANTIC = "semantic"
+WHOLE, RUNS, FOUND = "groups", "groups in runs", "found"  # kinds of partitions
 NAMES = {"auto:schur-rows": "schur-rows, the paper's", "auto:schur-bodies": "schur-bodies", "auto:schur-nested": "schur-nested",
          "auto:monolithic": "whole system"}
 
@@ -60,3 +62,30 @@ def problems(rows):
             _least(best, (row["solver"], workers), Cell(split_ms + float(row[f"t_s_model_p{workers}_ms"]), _partition(row)))
     return sorted((Problem(key, count, best, measured) for key, (best, measured, count) in found.items()),
                   key=lambda problem: (problem.key[0], problem.rows, float(problem.key[2])))
+
+
+@dataclasses.dataclass(frozen=True)
+class Kind:
+    """The fastest partition of a kind."""
+    cell: Cell
+    parts: int
+    interface_rows: int
+
+
+def _kind(row):
+    if row["partitioner"].partition("@")[0] != SEMANTIC:
+        return FOUND
+    return WHOLE if "split=whole" in row["partitioner"] else RUNS
+
+
+def kinds(rows):
+    """{(key, rows, solver): {kind: Kind}} on one thread, of the problems that name groups."""
+    found = {}
+    for row in rows:
+        if int(row["threads"]) != 1 or row["partitioner"] == "-":
+            continue
+        of_kind = found.setdefault((tuple(row[name] for name in KEY), int(row["rows"]), row["solver"]), {})
+        kind = Kind(Cell(float(row["t_pr_ms"]) + float(row["t_s_ms"]), _partition(row)), int(row["parts"]), int(row["interface_rows"]))
+        if _kind(row) not in of_kind or kind.cell.time_ms < of_kind[_kind(row)].cell.time_ms:
+            of_kind[_kind(row)] = kind
+    return {key: of_kind for key, of_kind in found.items() if WHOLE in of_kind}

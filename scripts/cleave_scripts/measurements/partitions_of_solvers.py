@@ -5,9 +5,9 @@ A solver that iterates is told to stop at LIMIT; what counts is t_pr + t_s until
 import math
 import statistics
 
-from cleave_scripts.measurements.accuracy import KEY
 from cleave_scripts.results.programs import replay
 
+KEY = ("scene", "bodies", "cfm", "step")
 PARTITIONERS = ("mindp", "maxdp", "bfs", "mr", "mix", "multilevel", "geometric", "random")
 REFINERS = ("none", "fm")
 DIRECT = ("schur", "auto:schur-bodies")

@@ -1,0 +1,54 @@
+"""Where the exact solver overtakes those that iterate: rock piles along rows, mass ratio and compliance, all else the same."""
+import dataclasses
+import math
+from collections.abc import Callable
+
+SCENE = "rock_pile"
+BODIES, CFM = 200, 1e-6  # where they are not what changes
+LIMITS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-6)
+
+
+@dataclasses.dataclass(frozen=True)
+class Axis:
+    """What changes along it, and which problems lie on it."""
+    label: str
+    title: str  # what stays the same
+    of: Callable
+    holds: Callable
+
+    def problems(self, found):
+        """In ascending order."""
+        return sorted((problem for problem in found if problem.scene == SCENE and self.holds(problem)), key=self.of)
+
+
+AXES = (Axis("rows", f"mass ratio 1, cfm {CFM:g}", lambda problem: problem.rows, lambda problem: problem.mass_ratio == 1 and problem.cfm == CFM),
+        Axis("mass ratio", f"{BODIES} bodies, cfm {CFM:g}", lambda problem: problem.mass_ratio,
+             lambda problem: problem.bodies == BODIES and problem.cfm == CFM),
+        Axis("cfm, s/kg", f"{BODIES} bodies, mass ratio 1", lambda problem: problem.cfm,
+             lambda problem: problem.bodies == BODIES and problem.mass_ratio == 1))
+
+
+def _crossing(before, after):
+    """The value at which a ratio passes 1 between two (value, ratio), by straight lines in logarithms; a ratio that is infinite does so
+    in the middle."""
+    (low, first), (high, second) = before, after
+    share = 0.5 if math.isinf(first) or math.isinf(second) else math.log(first) / (math.log(first) - math.log(second))
+    return low * (high / low)**share
+
+
+def exact_is_faster(points):
+    """[(from, to)] of the values of an axis where a ratio is 1 or more; None: to the end. points: (value, ratio), ascending."""
+    found, start, last = [], None, None
+    for point in points:
+        faster = point[1] >= 1
+        if faster and not found and last is None:
+            start = (None,)
+        elif faster and last[1] < 1:
+            start = (_crossing(last, point),)
+        elif not faster and start is not None:
+            found.append((start[0], _crossing(last, point)))
+            start = None
+        last = point
+    if start is not None:
+        found.append((start[0], None))
+    return found
