@@ -27,6 +27,7 @@ BAD = {
     "range": ("", "1,", "2,1", "nan,1", "x"),
     "scenes": ("", "chain_drop,", "rock_pill"),
     "recorded scenes": ("", "silo,", "sillo"),
+    "tables of friction": ("", "motion,", "motions"),
     "rungs": ("", "no_contact,", "no_contract"),
     "climbers": ("", "exact,", "exakt", "nope:nope"),
     "partitioners": ("", "nope"),
@@ -54,7 +55,7 @@ BAD = {
 NEAR = {
     "rock_pill": "rock_pile", "no_contract": "no_contact", "exakt": "exact", "reech": "reach", "shur": "schur",
     "markdow": "markdown", "201": "200", "figure9": "figure", "parts": "part",
-    "edit": "edits", "scen": "scene", "eliptic": "elliptic", "sillo": "silo"
+    "edit": "edits", "scen": "scene", "eliptic": "elliptic", "sillo": "silo", "motions": "motion"
 }
 
 MEASURED = {"--out": "output directory"}
@@ -101,7 +102,7 @@ COMMANDS = {
     "test": Command({"--preset": "preset"}, passes_on=True),
     "friction_cost": Command({"--rocks": "rock piles", "--cfm": "decades", "--scene": "piles", "--steps": "count", "--measure-every": "count",
                               "--rounds": "count", **MEASURED}, runs=True),
-    "friction_models": Command({"--scene": "scenes", "--steps": "count", **MEASURED}, runs=True),
+    "friction_models": Command({"--scene": "scenes", "--tables": "tables of friction", "--steps": "count", **MEASURED}, runs=True),
     "hidden_choices": Command({"--spec": "input file", "--report": "output directory", **MEASURED}, runs=True),
     "slurm/submit": Command({"--tasks": "count", "--dry-run": "", "--out": "output directory"},
                             ("{file}", "--tasks=1", "--out={out}"), runs=True),

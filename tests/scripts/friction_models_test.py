@@ -110,8 +110,13 @@ class FrictionModelsTest(StandInCase):
         self.assertIn("after 20 steps", told)
         self.assertIn("| chain drop | coulomb | 2.00 | 19.0 | 1.50 | 1.50 | 250 | 4.00 | 7 |", told)
 
+    def test_one_table_alone(self):
+        self.run_it("--steps", 20, "--scene", "chain_drop", "--tables", "velocities")
+        self.assertEqual([path.name for path in (self.directory / "out").iterdir()], ["friction_velocities.csv"])
+        self.assertEqual({call.split()[0] for call in self.calls()}, {"record", "replay"})
+
     def test_bad_options_are_one_line(self):
-        self.check_refused((("--scene", "rocks"), "--scene has 'rocks'"), (("--steps", 1), "--steps is '1'"))
+        self.check_refused((("--scene", "rocks"), "--scene has 'rocks'"), (("--tables", "all"), "--tables has 'all'"), (("--steps", 1), "--steps is '1'"))
 
 
 if __name__ == "__main__":
