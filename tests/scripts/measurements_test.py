@@ -279,14 +279,15 @@ class PartitionRegretTest(Measurement):
         calls = self.calls()
         replays = [call.split() for call in calls if call.startswith("replay ")]
         self.assertEqual((len(calls), len(replays)), (4 * (1 + 2 * 3), 4 * 2 * 3))
-        solvers = {"schur-rows": "pivot:schur-rows", "schur-bodies": "pivot:schur-bodies", "any": "pivot:chosen,pivot:monolithic"}
+        solvers = {kernel: f"pivot:{kernel},pivot:monolithic" for kernel in ("schur-rows", "schur-bodies")} | {"any": "pivot:chosen,pivot:monolithic"}
         for words in replays:
             given = dict(zip(words, words[1:]))
             self.assertEqual(given["--solver"], solvers[given["--cost-kernel"]])
             self.assertEqual((given["--threads"], given["--cost-threads"]), ("2", "2"))
         rows = self.rows("partition_regret.csv")
-        # scenes, steps and rounds; kernels, refiners and partitioners; chosen and monolithic
-        self.assertEqual(len(rows), 4 * 12 * 2 * (2 * 2 * (2 + 3 * 5 + 1) + 2))
+        # scenes, steps and rounds; kernels, refiners, partitioners and solvers, of which the stand-in splits for both; chosen and monolithic
+        self.assertEqual(len(rows), 4 * 12 * 2 * (2 * 2 * (2 + 3 * 5 + 1) * 2 + 2))
+        self.assertEqual({row["replay"] for row in rows}, {"schur-rows", "schur-bodies", "any"})
         self.assertEqual({row["round"] for row in rows}, {"1", "2"})
 
     def test_more_than_a_tenth_is_an_exit_code_and_said(self):

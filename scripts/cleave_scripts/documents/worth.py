@@ -74,7 +74,7 @@ def semantic(stored):
 
 def regret_of_auto(stored):
     """auto against the best cell of its grid."""
-    found = regret.regrets(need(stored.table(*REGRET), "auto", "auto_choice"))
+    found = regret.regrets(need(stored.table(*REGRET), "auto", "replay"))
     lines = [[f"{item.scene.replace('_', ' ')}, {item.solver}", item.best, *map(text.number, (item.best_ms, item.baseline_ms, item.auto_ms)),
               f"{100 * item.regret:+.0f} %", ", ".join(item.choices), "yes" if item.holds else "no"] for item in found]
     return (f"t_pr + t_s, ms, one thread ({stored.origin(REGRET[0])}); `auto` holds where it takes at most {1 + regret.MOST_REGRET:g} times what the "

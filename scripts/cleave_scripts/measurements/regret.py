@@ -2,17 +2,20 @@
 
 The time of a cell in a scene is the mean over its steps of the medians of t_pr_ms + t_s_ms over rounds. The best cell is the
 one of least time in the odd rounds; what it is compared by are the even rounds, which it was not chosen by. Where auto chooses
-the kernel too, its grid are the cells of all kernels, and the baseline is the best of theirs.
+the kernel too, its grid are the cells of all kernels, and the baseline is the best of theirs. Those were timed in several replays of a
+round, of which one may be slower than another throughout: every replay has the cell WHOLE, and times are divided by that of WHOLE in the
+same replay, round and step, and multiplied by its median over replays and rounds.
 """
 import dataclasses
 import math
 import statistics
 
 AUTO, BASELINE = "auto+none", "mindp+none"
+WHOLE = "pivot:monolithic"
 ANY_KERNEL = "pivot:chosen"  # the solver of auto where it chooses among all kernels
 MOST_REGRET = 0.1
 COLUMNS = ("scene", "seed", "step", "solver", "partitioner", "refiner", "max_bodies", "calibration", "auto_choice", "threads",
-           "round", "status", "t_pr_ms", "t_s_ms")
+           "round", "replay", "status", "t_pr_ms", "t_s_ms")
 
 
 @dataclasses.dataclass
@@ -43,12 +46,22 @@ def _total_ms(row):
     return float(row["t_s_ms"]) + (0 if math.isnan(t_pr_ms) else t_pr_ms)  # whoever ignores parts has none
 
 
-def _times(rows, name):
+def _paces(rows):
+    """{(replay, round, step): how much slower than usual WHOLE was there}"""
+    whole = {(row["replay"], row["round"], row["step"]): _total_ms(row) for row in rows if row["solver"] == WHOLE}
+    usual = {}
+    for (_, _, step), time_ms in whole.items():
+        usual.setdefault(step, []).append(time_ms)
+    return {key: time_ms / statistics.median(usual[key[2]]) for key, time_ms in whole.items()}
+
+
+def _times(rows, name, paces=None):
     """{name(row): [ms in the even rounds, in the odd ones]}"""
     lists = {}  # by cell, by parity, by step
     for row in rows:
         of_cell = lists.setdefault(name(row), ({}, {}))
-        of_cell[int(row["round"]) % 2].setdefault(row["step"], []).append(_total_ms(row))
+        pace = paces[row["replay"], row["round"], row["step"]] if paces else 1
+        of_cell[int(row["round"]) % 2].setdefault(row["step"], []).append(_total_ms(row) / pace)
     return {cell: [statistics.fmean(map(statistics.median, steps.values())) for steps in of_cell] for cell, of_cell in lists.items()}
 
 
@@ -64,11 +77,12 @@ def _best(times, cells):
 def _regret(scene, solver, rows):
     """rows: of the scene."""
     chooses_kernel = solver == ANY_KERNEL
+    paces = _paces(rows) if chooses_kernel else None
     auto = [row for row in rows if row["solver"] == solver and cell_of(row) == AUTO]
     grid = _times([row for row in rows if row["partitioner"] != "auto" and (chooses_kernel or row["solver"] == solver)],
-                  _cell_and_kernel if chooses_kernel else cell_of)
+                  _cell_and_kernel if chooses_kernel else cell_of, paces)
     best, baseline = _best(grid, grid), _best(grid, [cell for cell in grid if cell.split("/")[0] == BASELINE])
-    (auto_times,) = _times(auto, cell_of).values()
+    (auto_times,) = _times(auto, cell_of, paces).values()
     choices = dict.fromkeys(row["auto_choice"] for row in auto)
     return Regret(scene, solver, best, grid[best][0], grid[baseline][0], auto_times[0], list(choices))
 
