@@ -78,7 +78,8 @@ def regret_of_auto(stored):
     lines = [[f"{item.scene.replace('_', ' ')}, {item.solver}", item.best, *map(text.number, (item.best_ms, item.baseline_ms, item.auto_ms)),
               f"{100 * item.regret:+.0f} %", ", ".join(item.choices), "yes" if item.holds else "no"] for item in found]
     return (f"t_pr + t_s, ms, one thread ({stored.origin(REGRET[0])}); `auto` holds where it takes at most {1 + regret.MOST_REGRET:g} times what the "
-            f"best cell takes and no more than {regret.BASELINE}. The time of choosing, once a scene, is left out:\n\n" +
+            f"best cell takes and no more than {regret.BASELINE}. `{regret.ANY_KERNEL}` chooses the kernel too, against the cells of all kernels, whose replays are put at "
+            f"the pace of `{regret.WHOLE}` in each. The time of choosing, once a scene, is left out:\n\n" +
             text.table(["", "best cell", "its time", regret.BASELINE, "auto", "regret", "auto chose", "holds"], lines))
 
 
