@@ -21,7 +21,7 @@ struct Node {
   bool is_leaf;
 };
 
-// A set that is still to be looked at. One that is to be no set of others has no graph.
+// A set that is still to be looked at. One that may not be split has no graph.
 struct OpenSet {
   std::vector<int> bodies;  // of the whole graph, ascending
   BodyGraph graph;

@@ -50,14 +50,19 @@ void check_known(const std::string& option, const std::string& text, const Given
   }
 }
 
+// Whether a part of a text, "name=value", is of a parameter of this kind.
+bool is_of_kind(const std::string& part, std::span<const Parameter> parameters, Parameter::Kind kind) {
+  const auto row = std::ranges::find(parameters, part.substr(0, part.find('=')), &Parameter::name);
+  return row != parameters.end() && row->kind == kind;
+}
+
 // The text with fingerprints where it names files whose content counts.
 std::string known_text(const std::string& text, std::span<const Parameter> parameters, const Given& values) {
   std::string known = algorithm_name(text);
   for (const std::string& part : parts_of(text)) {
     const std::string name = part.substr(0, part.find('='));
-    const auto row = std::ranges::find(parameters, name, &Parameter::name);
-    const bool is_file = row != parameters.end() && row->kind == Parameter::Kind::content;
-    known += "@" + (is_file ? name + "=" + values.at(name) : part);
+    known +=
+        "@" + (is_of_kind(part, parameters, Parameter::Kind::content) ? name + "=" + values.at(name) : part);
   }
   return known;
 }
@@ -113,10 +118,8 @@ Algorithm read_algorithm(const std::string& option, const std::string& text,
 std::string text_with_content(const std::string& text, std::span<const Parameter> parameters,
                               const std::string& fingerprint) {
   std::string known = algorithm_name(text) + "@" + fingerprint;
-  for (const std::string& part : parts_of(text)) {
-    const auto row = std::ranges::find(parameters, part.substr(0, part.find('=')), &Parameter::name);
-    if (row == parameters.end() || row->kind != Parameter::Kind::path) known += "@" + part;
-  }
+  for (const std::string& part : parts_of(text))
+    if (!is_of_kind(part, parameters, Parameter::Kind::path)) known += "@" + part;
   return known;
 }
 

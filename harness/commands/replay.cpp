@@ -76,9 +76,9 @@ void check_files(ReplayOptions& options) {
   std::set<fs::path> seen;
   std::tuple<std::string, std::uint64_t, int, int> last;
   for (const std::string& path : options.files) {
-    ProblemFile file = read_problem_file_aloud(path);
     if (!seen.insert(fs::weakly_canonical(path)).second)
       throw std::invalid_argument("FILES: " + path + " is named twice");
+    ProblemFile file = read_problem_file_aloud(path);
     turn_friction(path, options.friction, file);
     const std::tuple now{file.scene, file.seed, file.problem.body_count(), file.step};
     if (const std::string option = asks_for_series(options.solve);

@@ -6,8 +6,8 @@ import statistics
 from cleave_scripts.documents.stored import need
 from cleave_scripts.measurements import model_savings as savings_of
 from cleave_scripts.measurements import partitions_of_solvers as parts_of
-from cleave_scripts.measurements.crossover import AXES, LIMITS as CROSSED, exact_is_faster
 from cleave_scripts.measurements.accuracy import EXACT, LEAST_SWEEPS, problems, sweep_costs
+from cleave_scripts.measurements.crossover import AXES, LIMITS as CROSSED, exact_is_faster
 from cleave_scripts.table import text
 
 COMMAND = "scripts/tradeoff"
@@ -29,8 +29,7 @@ def time_to_accuracy(stored):
     lines = []
     for problem in problems(rows):
         crossover = problem.crossover()
-        lines.append([problem.title,
-                      text.number(problem.time_ms(EXACT, SHOWN[-1])), *(_against(problem, limit) for limit in SHOWN),
+        lines.append([problem.title, text.number(problem.time_ms(EXACT, SHOWN[-1])), *(_against(problem, limit) for limit in SHOWN),
                       text.power(crossover) if crossover else "none"])
     return (f"t_s of `{EXACT}`, ms, one thread, on recorded steps; then the fastest of the solvers that iterate, told to stop at a residual (m/s "
             "over max(1, largest free velocity)), as a multiple of that: below 1 it is faster, *never* means that none got there in the sweeps "

@@ -18,17 +18,11 @@ def _of_rms(row):
     return float(row["rms_difference_m_per_s"]) / float(row["rms_velocity_m_per_s"])
 
 
-def _models_of(rows):
-    """{scene: its models, in the order of IN_A_STEP}"""
-    there = {(row["scene"], row["friction"]) for row in rows}
-    return {scene: [model for model in IN_A_STEP if (scene, model) in there] for scene in dict.fromkeys(row["scene"] for row in rows)}
-
-
 def friction_velocities(stored):
     rows = need(stored.table(*VELOCITIES), "friction models in a step", "status_of_law")
     lines = []
-    for scene, models in _models_of(rows).items():
-        for model in models:
+    for scene in dict.fromkeys(row["scene"] for row in rows):
+        for model in IN_A_STEP:
             mine = [row for row in rows if (row["scene"], row["friction"]) == (scene, model)]
             held = [row for row in mine if (row["status"], row["status_of_law"]) == ("ok", "ok")]
             shares, most = [100 * _of_rms(row) for row in held], [float(row["largest_difference_m_per_s"]) for row in held]

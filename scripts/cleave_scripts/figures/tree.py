@@ -5,8 +5,8 @@ import pathlib
 
 import pandas
 
-from cleave_scripts.measurements import accuracy
 from cleave_scripts.ladder.cells import CAMPAIGN as LADDER_CAMPAIGN
+from cleave_scripts.measurements import accuracy
 from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.campaign import run_files_below
 from cleave_scripts.results.errors import ResultError

@@ -1,5 +1,6 @@
 """Where the exact solver overtakes those that iterate: rock piles along rows, mass ratio and compliance, all else the same."""
 import dataclasses
+import itertools
 import math
 from collections.abc import Callable
 
@@ -37,18 +38,16 @@ def _crossing(before, after):
 
 
 def exact_is_faster(points):
-    """[(from, to)] of the values of an axis where a ratio is 1 or more; None: to the end. points: (value, ratio), ascending."""
-    found, start, last = [], None, None
-    for point in points:
-        faster = point[1] >= 1
-        if faster and not found and last is None:
-            start = (None,)
-        elif faster and last[1] < 1:
-            start = (_crossing(last, point),)
-        elif not faster and start is not None:
-            found.append((start[0], _crossing(last, point)))
-            start = None
-        last = point
-    if start is not None:
-        found.append((start[0], None))
+    """[(from, to)] of the values of an axis where a ratio is 1 or more; None: to the end. points: (value, ratio), ascending, one at least."""
+    found, start = [], None
+    for before, after in itertools.pairwise(points):
+        if (before[1] >= 1) == (after[1] >= 1):
+            continue
+        crossing = _crossing(before, after)
+        if before[1] >= 1:
+            found.append((start, crossing))
+        else:
+            start = crossing
+    if points[-1][1] >= 1:
+        found.append((start, None))
     return found
