@@ -136,6 +136,13 @@ TEST(NestedSplit, GroupsAreTheFirstLevelOfATree) {
   const Split whole = split("semantic@max-bodies=3", false);
   EXPECT_EQ(whole.parts.part_of_body, group);
   EXPECT_EQ(whole.parent_of_part, (std::vector<int>{2, 2, -1}));
+  // A small group is no leftover that another would take in.
+  std::vector<int> three = group;
+  three[4] = 2;
+  const Split small =
+      Splitter(setup("semantic@max-bodies=3", "none", 2)).run(problem, std::nullopt, {{}, three});
+  EXPECT_EQ(small.parts.part_of_body, (std::vector<int>{0, 0, 0, 0, 1, 2, 2, 2, 2, 2, 2, 2}));
+  EXPECT_EQ(small.parent_of_part, (std::vector<int>{3, 3, 3, -1}));
   const Split runs = split("semantic@max-bodies=4@split=chunks", false);
   EXPECT_EQ(runs.parts.part_of_body, (std::vector<int>{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
   EXPECT_EQ(tree_error(runs), "");
