@@ -311,6 +311,20 @@ class DamageTest(TreeTest):
             self.assert_has(page, words)
         self.assertTrue((self.directory / "figures" / "figure3.png").exists())
 
+    def test_a_table_of_accuracy_that_was_cut_short_keeps_what_is_whole(self):
+        write_tree(self.directory)
+        path = self.directory / "tradeoff.csv"
+        path.write_text("\n".join(path.read_text().splitlines()[:-3]) + "\n")  # the last step with two of five limits
+        loaded = data.load(self.directory, "schur")
+        self.assertIn(f"{path}: 3 of 27 rows are of steps that do not have every solve and are left out", loaded.messages)
+        self.assertEqual(len(loaded.tree.accuracy), 4)
+        for name in OF_TRADEOFF:
+            self.assertIsInstance(self.drawn()[name], str)
+        path.write_text("\n".join(line for line in path.read_text().splitlines() if ",exact," not in line) + "\n")
+        loaded = data.load(self.directory, "schur")
+        self.assertIsNone(loaded.tree.accuracy)
+        self.assertIn(f"{path}: no solver exact; the file is left out", loaded.messages)
+
     def test_a_failed_cell_leaves_a_marked_gap(self):
         rows = rows_of("log_tower")
         for row in rows:

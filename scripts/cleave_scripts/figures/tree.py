@@ -160,7 +160,13 @@ def _read_accuracy(path, tree):
     """Problems of what scripts/tradeoff wrote."""
     rows, notes = load_steps(path, accuracy.COLUMNS)
     tree.messages += notes
-    return accuracy.problems(rows) or None
+    kept = accuracy.of_whole_steps(rows)
+    if len(kept) < len(rows):
+        tree.messages.append(f"{path}: {len(rows) - len(kept)} of {len(rows)} rows are of steps that do not have every solve and are left out")
+    found = accuracy.problems(kept)
+    if not all(accuracy.EXACT in problem.times_ms for problem in found):
+        raise ResultError(f"{path}: no solver {accuracy.EXACT}")
+    return found or None
 
 
 def _read_claims(path, tree):

@@ -4,6 +4,7 @@ A residual is held against a limit as the judge does it: divided by max(1, large
 told to stop at each limit (`@until`); of its solves that are within a limit the fastest counts. A direct solver has one time
 for all limits that its residual meets. Where no solve is within a limit the time is infinite: never.
 """
+import collections
 import dataclasses
 import math
 
@@ -98,11 +99,22 @@ def sweep_costs(rows):
     return found
 
 
+def _key(row):
+    return tuple(row[name] for name in KEY)
+
+
+def of_whole_steps(rows):
+    """The rows of steps that have as many as any: a table that was cut short ends with a step of fewer."""
+    counts = collections.Counter(map(_key, rows))
+    most = max(counts.values(), default=0)
+    return [row for row in rows if counts[_key(row)] == most]
+
+
 def problems(rows):
     """[Problem], in the order of their first rows."""
     found = {}
     for row in rows:
-        count, times, iterative = found.setdefault(tuple(row[name] for name in KEY), (int(row["rows"]), {}, {}))
+        count, times, iterative = found.setdefault(_key(row), (int(row["rows"]), {}, {}))
         method = method_of(row)
         reached = times.setdefault(method, dict.fromkeys(LIMITS, math.inf))
         if any(f"@{name}=" in row["solver"] for name in BUDGET):
