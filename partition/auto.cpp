@@ -2,16 +2,19 @@
 // the kernel.
 //
 // Candidates are one part with all bodies, and every partitioner, max-bodies and refiner of the table below whose parts
-// are smaller than the whole, each with every kernel that is asked for; `monolithic` splits nothing and is one of one part. The
-// first of equal ones is taken, so that one subsystem wins where splitting buys nothing.
+// are smaller than the whole, each with every kernel that is asked for; `monolithic` splits nothing and is one of one part, and
+// `schur-nested` has its parts by recursion (nested.h), in a tree of pairs. The first of equal ones is taken, so that one
+// subsystem wins where splitting buys nothing.
 // Looking takes longer than many a solve, so a choice serves while the graph is of its size: it is made on the first graph
 // with an edge, and again on one whose edges are a quarter more or a fifth fewer. What was chosen is Partition::choice.
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "partition/calibration.h"
+#include "partition/nested.h"
 #include "partition/parameters.h"
 #include "partition/partitioner.h"
 #include "partition/refuse.h"
@@ -23,25 +26,43 @@ namespace {
 constexpr std::array kPartitioners = {"mindp", "mix", "multilevel"};
 constexpr std::array kMaxBodies = {10, 25, 50, 100, 200};
 constexpr std::array kRefiners = {"none", "fm"};
+constexpr int kArity = 2;
 constexpr double kOtherSize = 1.25;  // a ratio of edges from which on a choice is made again
 
-// "mix@max-bodies=50+fm".
-struct Candidate {
-  std::string text;
-  std::unique_ptr<Partitioner> partitioner;
-  std::unique_ptr<Refiner> refiner;
+class Candidate {
+ public:
+  Candidate(const std::string& partitioner, const std::string& refiner)
+      : text_(partitioner + "+" + refiner),
+        partitioner_(make_partitioner(partitioner)),
+        refiner_(make_refiner(refiner)) {
+    if (partitioner_->max_bodies())
+      set_splitter_.emplace(read_partitioner(partitioner), read_refiner(refiner), kArity);
+  }
+
+  // "mix@max-bodies=50+fm".
+  const std::string& text() const { return text_; }
+  bool splits(const BodyGraph& graph) const {
+    return partitioner_->max_bodies() && *partitioner_->max_bodies() < graph.body_count();
+  }
+
+  Partition split_once(const BodyGraph& graph) const {
+    Partition parts = partitioner_->run(graph);
+    refiner_->run(graph, partitioner_->max_bodies().value_or(std::max(1, graph.body_count())), parts);
+    return parts;
+  }
+
+  // Into a tree, where it splits at all.
+  Partition split_for(CostKernel kernel, const BodyGraph& graph) const {
+    return kernel == CostKernel::schur_nested && splits(graph) ? set_splitter_->run(graph)
+                                                               : split_once(graph);
+  }
+
+ private:
+  std::string text_;
+  std::unique_ptr<Partitioner> partitioner_;
+  std::unique_ptr<Refiner> refiner_;
+  std::optional<SetSplitter> set_splitter_;
 };
-
-Candidate make_candidate(const std::string& partitioner, const std::string& refiner) {
-  return {partitioner + "+" + refiner, make_partitioner(partitioner), make_refiner(refiner)};
-}
-
-Partition split(const Candidate& candidate, const BodyGraph& graph) {
-  Partition parts = candidate.partitioner->run(graph);
-  candidate.refiner->run(graph, candidate.partitioner->max_bodies().value_or(std::max(1, graph.body_count())),
-                         parts);
-  return parts;
-}
 
 // Places in candidates_ and costs_.
 struct Choice {
@@ -52,12 +73,11 @@ class Auto final : public Partitioner {
  public:
   explicit Auto(const Settings& settings)
       : costs_(kernel_costs(settings)), cost_kernel_(settings.text(parameters::cost_kernel().name)) {
-    candidates_.push_back(make_candidate("single", "none"));
+    candidates_.emplace_back("single", "none");
     for (const int max_bodies : kMaxBodies)
       for (const char* partitioner : kPartitioners)
         for (const char* refiner : kRefiners)
-          candidates_.push_back(
-              make_candidate(partitioner + ("@max-bodies=" + std::to_string(max_bodies)), refiner));
+          candidates_.emplace_back(partitioner + ("@max-bodies=" + std::to_string(max_bodies)), refiner);
   }
 
   void keep_choice(const std::string& choice) override {
@@ -74,7 +94,7 @@ class Auto final : public Partitioner {
  private:
   Partition do_run(const BodyGraph& graph) const override {
     if (!kept_ && graph.edge_count() > 0 && is_of_other_size(graph.edge_count())) choose(graph);
-    Partition parts = split(candidates_[chosen_.candidate], graph);
+    Partition parts = candidates_[chosen_.candidate].split_for(costs_[chosen_.cost].kernel, graph);
     parts.choice = named(chosen_);
     return parts;
   }
@@ -91,14 +111,18 @@ class Auto final : public Partitioner {
 
   void choose(const BodyGraph& graph) const {
     std::vector<CostCounter> counters;
-    for (const KernelCost& cost : costs_) counters.emplace_back(graph, cost.kernel, cost.active_share);
+    for (const KernelCost& cost : costs_)
+      counters.emplace_back(graph, cost.kernel, cost.active_share.of(graph));
     double least_ms = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
-      if (k > 0 && *candidates_[k].partitioner->max_bodies() >= graph.body_count()) continue;
-      const Partition parts = split(candidates_[k], graph);
+      if (k > 0 && !candidates_[k].splits(graph)) continue;
+      std::optional<Partition> one_level, tree;
       for (std::size_t c = 0; c < costs_.size(); ++c) {
         if (!is_choice({k, c})) continue;
-        const double ms = modelled_ms(counters[c].count(parts.part_of_body, parts.part_count), costs_[c]);
+        const CostKernel kernel = costs_[c].kernel;
+        std::optional<Partition>& parts = kernel == CostKernel::schur_nested ? tree : one_level;
+        if (!parts) parts = candidates_[k].split_for(kernel, graph);
+        const double ms = modelled_ms(counters[c].count(*parts), costs_[c]);
         if (ms < least_ms) least_ms = ms, chosen_ = {k, c};
       }
     }
@@ -107,7 +131,7 @@ class Auto final : public Partitioner {
 
   std::string named(const Choice& choice) const {
     const int kernel = static_cast<int>(costs_[choice.cost].kernel);
-    return candidates_[choice.candidate].text + "/" + cost_kernel_names()[kernel];
+    return candidates_[choice.candidate].text() + "/" + cost_kernel_names()[kernel];
   }
 
   std::vector<KernelCost> costs_;  // of the kernels to choose among

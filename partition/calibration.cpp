@@ -21,7 +21,7 @@ extern const char* const kShippedCalibration;  // calibration.toml
 
 namespace {
 
-constexpr const char* kSchema = "cleave-calibration-3";
+constexpr const char* kSchema = "cleave-calibration-4";
 constexpr const char* kThreads = ".threads-";
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Range kAtLeastZero{0, kInfinity}, kAnyNumber{-kInfinity, kInfinity};
@@ -33,8 +33,11 @@ void visit_numbers(Cost& cost, Visitor&& visit) {
   visit("factorizations_per_log_body", cost.factorizations.per_log_body, kAnyNumber);
   visit("factorizations_per_degree", cost.factorizations.per_degree, kAnyNumber);
   visit("factorizations_per_mass_spread", cost.factorizations.per_mass_spread, kAnyNumber);
+  visit("factorizations_per_fixed_row", cost.factorizations.per_fixed_row, kAnyNumber);
   visit("factorizations_most", cost.factorizations.most, Range{1, kInfinity});
-  visit("active_share", cost.active_share, Range{0, 1});
+  visit("active_share_constant", cost.active_share.constant, kAnyNumber);
+  visit("active_share_per_log_degree", cost.active_share.per_log_degree, kAnyNumber);
+  visit("active_share_per_constraint", cost.active_share.per_constraint, kAnyNumber);
   for (int t = 0; t < kCostTerms; ++t) visit(cost_terms()[t].name, cost.cost[t], kAtLeastZero);
 }
 

@@ -1,6 +1,6 @@
 // The coefficients of the cost model (cost_model.h) on one machine, as text that `cleave calibrate` writes:
 //
-//     schema = "cleave-calibration-3"          first lines: name = "text", kept as they are
+//     schema = "cleave-calibration-4"          first lines: name = "text", kept as they are
 //     [schur-rows.threads-1]                   a kernel on so many threads
 //     factorizations_most = 6                  then a line for each number of KernelCost
 //

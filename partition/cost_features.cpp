@@ -3,10 +3,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "partition/cut_cover.h"
+
 namespace cleave {
 namespace {
 
-constexpr const char* kNames[] = {"schur-rows", "schur-bodies", "monolithic"};
+constexpr const char* kNames[] = {"schur-rows", "schur-bodies", "schur-nested", "monolithic"};
 
 // Rows of a body to bodies of the same part, counted at the lower one, and to others.
 struct BodyRows {
@@ -51,18 +53,19 @@ CostCounter::CostCounter(const BodyGraph& graph, CostKernel kernel, double activ
       mass_spread_(mass_spread_of(graph)),
       eliminator_(graph) {}
 
-CostFeatures CostCounter::count(std::span<const int> part_of_body, int part_count) {
+CostFeatures CostCounter::count(const Partition& partition) {
   CostFeatures features;
   features.kernel = kernel_;
   features.bodies = graph_.body_count();
   features.edges = graph_.edge_count();
   features.mass_spread = mass_spread_;
+  for (int i = 0; i < graph_.body_count(); ++i) features.fixed_rows += graph_.fixed_rows(i);
   if (kernel_ == CostKernel::schur_rows) {
-    count_parts(part_of_body, part_count, features);
-  } else if (kernel_ == CostKernel::schur_bodies) {
-    count_whole(part_of_body, part_count, features);
+    count_parts(partition, features);
+  } else if (kernel_ == CostKernel::monolithic) {
+    count_whole({std::vector<int>(graph_.body_count(), 0), graph_.body_count() > 0}, features);
   } else {
-    count_whole(std::vector<int>(graph_.body_count(), 0), graph_.body_count() > 0, features);
+    count_whole(partition, features);
   }
   for (const PartCost& part : features.parts) features.rows += part.rows;
   features.rows += features.cut_rows;
@@ -96,20 +99,24 @@ void CostCounter::set_interface(int cut_rows, CostFeatures& features) const {
   features.interface_entries = unknowns * (unknowns + 1) / 2;
 }
 
-void CostCounter::count_parts(std::span<const int> part_of_body, int part_count, CostFeatures& features) {
-  std::vector<std::vector<int>> bodies(part_count);
-  for (int i = 0; i < graph_.body_count(); ++i) bodies[part_of_body[i]].push_back(i);
+void CostCounter::count_parts(const Partition& partition, CostFeatures& features) {
+  std::vector<std::vector<int>> bodies(partition.part_count);
+  for (int i = 0; i < graph_.body_count(); ++i) bodies[partition.part_of_body[i]].push_back(i);
   int sides = 0;
   for (const std::vector<int>& part : bodies) {
-    features.parts.push_back(count_part(part, part_of_body));
+    features.parts.push_back(count_part(part, partition.part_of_body));
     sides += features.parts.back().cut_rows;
   }
   set_interface(sides / 2, features);
 }
 
-void CostCounter::count_whole(std::span<const int> part_of_body, int part_count, CostFeatures& features) {
-  features.parts.resize(part_count);
-  const std::vector<char> cover = cut_cover(graph_, part_of_body);
+void CostCounter::count_whole(const Partition& partition, CostFeatures& features) {
+  const std::vector<int>& part_of_body = partition.part_of_body;
+  const std::vector<int> node =
+      separator_nodes(graph_, part_of_body, partition.part_count,
+                      kernel_ == CostKernel::schur_nested ? partition.parent_of_part : std::vector<int>());
+  const auto is_interface = [&](int body) { return node[body] >= partition.part_count; };
+  features.parts.resize(partition.part_count);
   std::vector<int> bodies(graph_.body_count());
   std::iota(bodies.begin(), bodies.end(), 0);
   for (const int body : bodies) {
@@ -119,13 +126,13 @@ void CostCounter::count_whole(std::span<const int> part_of_body, int part_count,
     part.rows += rows.inside;
     part.cut_rows += rows.cut;
     features.cut_rows += rows.cut;
-    features.cover_bodies += cover[body];
+    features.cover_bodies += is_interface(body);
   }
   features.cut_rows /= 2;
   features.interface_unknowns = 6.0 * features.cover_bodies;
   PartCost interface;
-  for (const EliminatedColumn& column : eliminator_.run(bodies, cover))
-    add_column(column, cover[column.body] ? interface : features.parts[part_of_body[column.body]]);
+  for (const EliminatedColumn& column : eliminator_.run(bodies, node))
+    add_column(column, is_interface(column.body) ? interface : features.parts[part_of_body[column.body]]);
   features.interface_flops = interface.factor_flops;
   features.interface_entries = interface.entries;
   features.interface_blocks = interface.blocks;

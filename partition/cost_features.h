@@ -2,6 +2,7 @@
 //
 //   monolithic     one factor of all bodies
 //   schur-bodies   one factor, the bodies of a vertex cover of the cut last: what follows them is the interface
+//   schur-nested   one factor, such a cover at every node of the tree of parts (cut_cover.h), children first
 //   schur-rows     a factor for every part; the interface is dense and has the cut rows whose weight is not zero
 //                  (Liu & Andrews 2022, section 2). How many these are the partition does not say: a share of them
 //
@@ -23,7 +24,7 @@
 
 namespace cleave {
 
-enum class CostKernel { schur_rows, schur_bodies, monolithic };
+enum class CostKernel { schur_rows, schur_bodies, schur_nested, monolithic };
 // Their names, in that order; those of the solver's kernels.
 std::span<const char* const> cost_kernel_names();
 
@@ -42,8 +43,9 @@ struct CostFeatures {
   int bodies = 0, edges = 0;    // of the graph
   double mass_spread = 0;       // standard deviation of ln(mass), of its bodies
   int rows = 0;                 // of the step
+  int fixed_rows = 0;           // of these with static geometry
   int cut_rows = 0;             // 0 for monolithic
-  int cover_bodies = 0;         // of a greedy cover of the cut; the kernel's own may be smaller; 0 for others
+  int cover_bodies = 0;         // of greedy covers of the cut; the kernel's own may be smaller; 0 for others
   double interface_unknowns = 0;  // expected size of the interface: rows, or six a body
   double interface_flops = 0, interface_entries = 0;
   double interface_blocks = 0;  // of a factor in body space
@@ -55,8 +57,8 @@ class CostCounter {
   // active_share: of the cut rows, those in the interface of schur-rows; in [0, 1].
   CostCounter(const BodyGraph& graph, CostKernel kernel, double active_share);
 
-  // From scratch. part_of_body: (n) ids 0 .. part_count - 1.
-  CostFeatures count(std::span<const int> part_of_body, int part_count);
+  // From scratch. Parts of one level are a tree of one to schur-nested; other kernels look at no tree.
+  CostFeatures count(const Partition& partition);
 
   // schur-rows: one part anew; bodies: its own.
   PartCost count_part(std::span<const int> bodies, std::span<const int> part_of_body);
@@ -64,8 +66,8 @@ class CostCounter {
   void set_interface(int cut_rows, CostFeatures& features) const;
 
  private:
-  void count_whole(std::span<const int> part_of_body, int part_count, CostFeatures& features);
-  void count_parts(std::span<const int> part_of_body, int part_count, CostFeatures& features);
+  void count_whole(const Partition& partition, CostFeatures& features);
+  void count_parts(const Partition& partition, CostFeatures& features);
 
   const BodyGraph& graph_;
   const CostKernel kernel_;

@@ -66,21 +66,39 @@ std::array<double, kCostTerms> unit_costs_ms(const CostFeatures& features, int t
   return costs;
 }
 
-std::array<double, 4> ExpectedFactorizations::terms(const CostFeatures& features) {
-  const int bodies = std::max(features.bodies, 1);
-  return {1, std::log(bodies), static_cast<double>(features.edges) / bodies, features.mass_spread};
+std::array<double, 5> ExpectedFactorizations::terms(const CostFeatures& features) {
+  const double bodies = std::max(features.bodies, 1);
+  return {1, std::log(bodies), features.edges / bodies, features.mass_spread, features.fixed_rows / bodies};
 }
 
 double ExpectedFactorizations::of(const CostFeatures& features) const {
-  const auto [one, log_bodies, degree, spread] = terms(features);
-  return std::clamp(
-      std::exp(constant * one + per_log_body * log_bodies + per_degree * degree + per_mass_spread * spread),
-      1.0, most);
+  const auto [one, log_bodies, degree, spread, fixed_rows] = terms(features);
+  return std::clamp(std::exp(constant * one + per_log_body * log_bodies + per_degree * degree +
+                             per_mass_spread * spread + per_fixed_row * fixed_rows),
+                    1.0, most);
 }
 
 ExpectedFactorizations ExpectedFactorizations::always(double factorizations) {
-  return {std::log(factorizations), 0, 0, 0, factorizations};
+  return {.constant = std::log(factorizations), .most = factorizations};
 }
+
+// A graph without edges has no cut, and no share of it.
+std::array<double, 3> ExpectedActiveShare::terms(const BodyGraph& graph) {
+  if (graph.edge_count() == 0) return {1, 0, 0};
+  const double edges = graph.edge_count();
+  double sides = 0;  // of constraints
+  for (int i = 0; i < graph.body_count(); ++i)
+    for (int k = graph.first(i); k < graph.last(i); ++k) sides += graph.weight(k, EdgeWeight::constraints);
+  return {1, std::log(edges / graph.body_count()), sides / (2 * edges)};
+}
+
+double ExpectedActiveShare::of(const BodyGraph& graph) const {
+  const auto [one, log_degree, constraints] = terms(graph);
+  return std::clamp(
+      1 - std::exp(-constant * one - per_log_degree * log_degree - per_constraint * constraints), 0.0, 1.0);
+}
+
+ExpectedActiveShare ExpectedActiveShare::always(double share) { return {-std::log(1 - share), 0, 0}; }
 
 double modelled_ms(const CostFeatures& features, const KernelCost& cost) {
   const std::array<double, kCostTerms> units =

@@ -33,17 +33,32 @@ std::span<const CostTerm, kCostTerms> cost_terms();
 // Factorisations of a solve: more where there are more bodies and where their masses differ, fewer where a body is held by more
 // others, as in a tower at rest. Within what was fitted,
 //
-//     ln factorizations = constant + per_log_body ln(bodies) + per_degree edges / bodies + per_mass_spread s,   in [0, ln(most)]
+//     ln factorizations = constant + per_log_body ln(bodies) + per_degree edges / bodies + per_mass_spread s
+//                         + per_fixed_row rows with static geometry / bodies,   in [0, ln(most)]
 //
 // with s the standard deviation of ln(mass).
 struct ExpectedFactorizations {
-  double constant = 0, per_log_body = 0, per_degree = 0, per_mass_spread = 0;
+  double constant = 0, per_log_body = 0, per_degree = 0, per_mass_spread = 0, per_fixed_row = 0;
   double most = 1;
 
-  // What the four numbers are coefficients of.
-  static std::array<double, 4> terms(const CostFeatures& features);
+  // What the five numbers are coefficients of.
+  static std::array<double, 5> terms(const CostFeatures& features);
   double of(const CostFeatures& features) const;
   static ExpectedFactorizations always(double factorizations);  // >= 1
+};
+
+// The share of cut rows whose weight is not zero, by which the interface of schur-rows is smaller than the cut: more of them in
+// a graph whose bodies are held by more others, and by more contacts each, as few rows of what lies still slide or part.
+// Within [0, 1],
+//
+//     -ln(1 - share) = constant + per_log_degree ln(edges / bodies) + per_constraint constraints between bodies / edges
+struct ExpectedActiveShare {
+  double constant = 0, per_log_degree = 0, per_constraint = 0;
+
+  // What the three numbers are coefficients of.
+  static std::array<double, 3> terms(const BodyGraph& graph);
+  double of(const BodyGraph& graph) const;
+  static ExpectedActiveShare always(double share);  // in [0, 1]
 };
 
 // One kernel on so many threads.
@@ -51,7 +66,7 @@ struct KernelCost {
   CostKernel kernel = CostKernel::schur_rows;
   int threads = 1;
   ExpectedFactorizations factorizations;
-  double active_share = 1;                // of the cut rows, expected in the interface of schur-rows
+  ExpectedActiveShare active_share;
   std::array<double, kCostTerms> cost{};  // >= 0, in the units of the terms
 };
 

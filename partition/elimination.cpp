@@ -22,7 +22,7 @@ void Eliminator::find_neighbours(std::span<const int> bodies) {
 }
 
 void Eliminator::push(int local) {
-  queue_.push({is_last_[local], static_cast<int>(neighbours_[local].size()), local});
+  queue_.push({stage_[local], static_cast<int>(neighbours_[local].size()), local});
 }
 
 void Eliminator::add_column(int local) {
@@ -63,7 +63,7 @@ void Eliminator::find_parents() {
 }
 
 std::span<const EliminatedColumn> Eliminator::run(std::span<const int> bodies,
-                                                  std::span<const char> is_last) {
+                                                  std::span<const int> stage_of_body) {
   const std::size_t count = bodies.size();
   bodies_.assign(bodies.begin(), bodies.end());
   find_neighbours(bodies);
@@ -71,21 +71,19 @@ std::span<const EliminatedColumn> Eliminator::run(std::span<const int> bodies,
   mark_.assign(count, 0);
   stamp_ = 0;
   columns_.clear();
-  is_last_.assign(count, 0);
-  if (!is_last.empty())
-    for (std::size_t k = 0; k < count; ++k) is_last_[k] = is_last[bodies[k]];
-  int first_left = 0;  // bodies that are not last
-  for (std::size_t k = 0; k < count; ++k) push(static_cast<int>(k)), first_left += !is_last_[k];
+  stage_.assign(count, 0);
+  if (!stage_of_body.empty())
+    for (std::size_t k = 0; k < count; ++k) stage_[k] = stage_of_body[bodies[k]];
+  const int last_stage = count == 0 ? 0 : std::ranges::max(stage_);
+  for (std::size_t k = 0; k < count; ++k) push(static_cast<int>(k));
   while (columns_.size() < count) {
     const Candidate next = queue_.top();
     queue_.pop();
     if (place_[next.local] >= 0 || next.degree != static_cast<int>(neighbours_[next.local].size())) continue;
-    const bool one_kind = next.is_last || first_left == static_cast<int>(count - columns_.size());
-    if (one_kind && next.degree == static_cast<int>(count - columns_.size()) - 1) {
+    if (next.stage == last_stage && next.degree == static_cast<int>(count - columns_.size()) - 1) {
       eliminate_clique(bodies);
       break;
     }
-    first_left -= !next.is_last;
     eliminate(next.local);
   }
   queue_ = {};

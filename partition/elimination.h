@@ -3,8 +3,8 @@
 //
 // Bodies are eliminated by minimum degree (Tinney and Walker, Proceedings of the IEEE 55, 1967; George and Liu, SIAM
 // Review 31, 1989), the degree counted exactly: the body with the fewest neighbours goes next, the lowest place among
-// `bodies` on ties, and its neighbours become neighbours of each other. Bodies that are `last` go after all others. Solvers
-// order with approximate degrees and join columns, so that their counts differ by some percent.
+// `bodies` on ties, and its neighbours become neighbours of each other. Bodies of a later stage go after all of an earlier one.
+// Solvers order with approximate degrees and join columns, so that their counts differ by some percent.
 #pragma once
 
 #include <queue>
@@ -29,14 +29,13 @@ class Eliminator {
  public:
   explicit Eliminator(const BodyGraph& graph) : graph_(graph), local_of_body_(graph.body_count(), -1) {}
 
-  // Columns in order of elimination, of `bodies` and the edges among them. bodies: distinct. is_last: (n), or empty where
-  // all are equal. Valid until the next call.
-  std::span<const EliminatedColumn> run(std::span<const int> bodies, std::span<const char> is_last = {});
+  // Columns in order of elimination, of `bodies` and the edges among them. bodies: distinct. stage_of_body: (n), or
+  // empty where all are equal. Valid until the next call.
+  std::span<const EliminatedColumn> run(std::span<const int> bodies, std::span<const int> stage_of_body = {});
 
  private:
   struct Candidate {
-    char is_last;
-    int degree, local;
+    int stage, degree, local;
     auto operator<=>(const Candidate&) const = default;
   };
 
@@ -52,8 +51,7 @@ class Eliminator {
   std::vector<std::vector<int>>
       neighbours_;          // by place: those that are left; of an eliminated body, its column
   std::vector<int> place_;  // by place in `bodies`: of its column, -1 while it is left
-  std::vector<int> mark_, bodies_;
-  std::vector<char> is_last_;
+  std::vector<int> mark_, bodies_, stage_;
   int stamp_ = 0;
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
   std::vector<EliminatedColumn> columns_;

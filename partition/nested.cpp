@@ -35,9 +35,9 @@ class Recursion {
   Recursion(int max_bodies, int arity, const SplitSet& split_set)
       : max_bodies_(max_bodies), arity_(arity), split_set_(split_set) {}
 
-  NestedPartition run(const BodyGraph& graph) {
+  Partition run(const BodyGraph& graph) {
     const int n = graph.body_count();
-    result_.leaves.part_of_body.resize(n);
+    result_.part_of_body.resize(n);
     if (n == 0) return std::move(result_);
     std::vector<int> bodies(n);
     std::iota(bodies.begin(), bodies.end(), 0);
@@ -62,8 +62,8 @@ class Recursion {
       }
     }
     nodes_.push_back({parent, true});
-    for (const int body : bodies) result_.leaves.part_of_body[body] = result_.leaves.part_count;
-    ++result_.leaves.part_count;
+    for (const int body : bodies) result_.part_of_body[body] = result_.part_count;
+    ++result_.part_count;
   }
 
   // Of the node that was made last, the first to be taken first.
@@ -105,7 +105,7 @@ class Recursion {
   const SplitSet& split_set_;
   std::vector<Node> nodes_;
   std::vector<OpenSet> open_;
-  NestedPartition result_;
+  Partition result_;
 };
 
 Algorithm with_max_bodies(const Algorithm& partitioner, int max_bodies) {
@@ -116,8 +116,7 @@ Algorithm with_max_bodies(const Algorithm& partitioner, int max_bodies) {
 
 }  // namespace
 
-NestedPartition split_by_recursion(const BodyGraph& graph, int max_bodies, int arity,
-                                   const SplitSet& split_set) {
+Partition split_by_recursion(const BodyGraph& graph, int max_bodies, int arity, const SplitSet& split_set) {
   if (max_bodies < 1) refuse("max_bodies", max_bodies, ">= 1");
   if (arity < 2) refuse("arity", arity, ">= 2");
   return Recursion(max_bodies, arity, split_set).run(graph);
@@ -139,6 +138,14 @@ Partition SetSplitter::grow(const BodyGraph& set, int most_bodies) const {
       most_bodies <= max_bodies_ ? max_bodies_ : most_grown_bodies(most_bodies, kJoinedGrowth);
   join_leftovers(set, {arity_, most_bodies / 2 + most_bodies % 2, most_joined}, parts);
   return parts;
+}
+
+Partition SetSplitter::run(const BodyGraph& graph) const {
+  return split_by_recursion(graph, max_bodies_, arity_, [this](const BodyGraph& set, int most_bodies) {
+    Partition parts = grow(set, most_bodies);
+    refine(set, most_bodies, parts);
+    return parts;
+  });
 }
 
 void SetSplitter::refine(const BodyGraph& set, int most_bodies, Partition& parts) const {

@@ -4,7 +4,7 @@
 //
 // The nodes of the tree are the sets: the leaves 0..parts-1, which are the parts, in order of creation (depth
 // first, children in the order of their parts), then the inner nodes. Every parent has a greater number than its
-// children, so that the last node is the root.
+// children, so that the last node is the root. A single part is its own root; no bodies have no node.
 #pragma once
 
 #include <functional>
@@ -19,25 +19,22 @@
 
 namespace cleave {
 
-struct NestedPartition {
-  Partition leaves;
-  std::vector<int> parent_of_part;  // (nodes): -1 for the root; one entry where there is a single part
-};
-
 // Splits one set of at least two bodies. most_bodies: of a child, ceil(bodies of the set / arity), which what refines
 // may exceed by its growth.
 using SplitSet = std::function<Partition(const BodyGraph& set, int most_bodies)>;
 
 // Leaves have at most max_bodies bodies, and those of a set whose children were to have so many
 // (most_bodies <= max_bodies), or that split_set left whole, as many as split_set left them. max_bodies >= 1, arity >= 2.
-NestedPartition split_by_recursion(const BodyGraph& graph, int max_bodies, int arity,
-                                   const SplitSet& split_set);
+Partition split_by_recursion(const BodyGraph& graph, int max_bodies, int arity, const SplitSet& split_set);
 
 // What splits the sets: a partitioner and a refiner of the tables.
 class SetSplitter {
  public:
   // partitioner: one that has a parameter max-bodies. arity >= 2.
   SetSplitter(const Algorithm& partitioner, const Algorithm& refiner, int arity);
+
+  // By recursion, every set refined.
+  Partition run(const BodyGraph& graph) const;
 
   int max_bodies() const { return max_bodies_; }
   int arity() const { return arity_; }

@@ -162,7 +162,7 @@ const Parameter& cost_kernel() {
   static const Parameter parameter{.name = "cost-kernel",
                                    .kind = Kind::word,
                                    .default_value = "schur-rows",
-                                   .words = {"schur-rows", "schur-bodies", kAnyKernel},
+                                   .words = {"schur-rows", "schur-bodies", "schur-nested", kAnyKernel},
                                    .help = "kernel whose time is modelled; any: auto chooses among all",
                                    .source = "partition/README.md"};
   return parameter;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
 
+#include "partition/cut_cover.h"
 #include "partition/refuse.h"
 
 namespace cleave {
@@ -20,49 +20,9 @@ void check_part_ids(const BodyGraph& graph, std::span<const int> part_of_body) {
   }
 }
 
-// Cut edges of every body, (n).
-std::vector<int> count_cut_edges(const BodyGraph& graph, std::span<const int> part_of_body) {
-  std::vector<int> cut_edges(graph.body_count(), 0);
-  for (int i = 0; i < graph.body_count(); ++i) {
-    for (int j : graph.neighbours(i)) cut_edges[i] += part_of_body[i] != part_of_body[j];
-  }
-  return cut_edges;
-}
-
 }  // namespace
 
 std::string_view kernel_of_choice(std::string_view choice) { return choice.substr(choice.rfind('/') + 1); }
-
-// uncovered: cut edges of every body that no chosen body covers. Bodies are kept in buckets by that count, each a
-// heap by index; a count only falls, so a stale body is put down where it belongs.
-std::vector<char> cut_cover(const BodyGraph& graph, std::span<const int> part_of_body) {
-  std::vector<int> uncovered = count_cut_edges(graph, part_of_body);
-  const int n = graph.body_count();
-  const int most = n == 0 ? 0 : *std::max_element(uncovered.begin(), uncovered.end());
-  std::vector<std::vector<int>> bucket(most + 1);
-  for (int i = 0; i < n; ++i) bucket[uncovered[i]].push_back(i);  // ascending: already heaps
-  std::vector<char> chosen(n, 0);
-  for (int count = most; count > 0; --count) {
-    std::vector<int>& heap = bucket[count];
-    while (!heap.empty()) {
-      std::pop_heap(heap.begin(), heap.end(), std::greater<>());
-      const int body = heap.back();
-      heap.pop_back();
-      if (uncovered[body] != count) {
-        std::vector<int>& lower = bucket[uncovered[body]];
-        lower.push_back(body);
-        std::push_heap(lower.begin(), lower.end(), std::greater<>());
-        continue;
-      }
-      chosen[body] = 1;
-      uncovered[body] = 0;
-      for (int other : graph.neighbours(body)) {
-        if (part_of_body[other] != part_of_body[body] && uncovered[other] > 0) --uncovered[other];
-      }
-    }
-  }
-  return chosen;
-}
 
 Partition numbered_by_lowest_body(std::span<const int> label_of_body) {
   Partition partition;
@@ -99,8 +59,9 @@ PartitionMetrics measure_partition(const BodyGraph& graph, std::span<const int> 
   }
   metrics.contiguous = count_pieces(graph, part_of_body) == metrics.parts;
 
-  const std::vector<int> cut_edges = count_cut_edges(graph, part_of_body);
-  metrics.interface_bodies = static_cast<int>(n - std::count(cut_edges.begin(), cut_edges.end(), 0));
+  for (int i = 0; i < n; ++i)
+    metrics.interface_bodies += std::ranges::any_of(
+        graph.neighbours(i), [&](int other) { return part_of_body[other] != part_of_body[i]; });
   const std::vector<char> cover = cut_cover(graph, part_of_body);
   metrics.interface_cover_bodies = static_cast<int>(std::count(cover.begin(), cover.end(), 1));
   return metrics;

@@ -1,6 +1,7 @@
 // A partition of the bodies into parts (the subsystems of the parallel solver), and its metrics.
 //
-// Part ids are 0 .. part_count-1 in order of creation and stay so under refinement. No part is empty.
+// Part ids are 0 .. part_count-1 in order of creation and stay so under refinement. No part is empty. Parts of a solver that
+// takes an interface at every level are the leaves of a tree (nested.h).
 #pragma once
 
 #include <span>
@@ -15,7 +16,8 @@ namespace cleave {
 struct Partition {
   std::vector<int> part_of_body;  // (n)
   int part_count = 0;
-  std::string choice = {};  // of a partitioner that chooses others: what made it, else empty
+  std::string choice = {};               // of a partitioner that chooses others: what made it, else empty
+  std::vector<int> parent_of_part = {};  // (nodes of the tree): -1 for the root; empty: one level
 };
 
 // The kernel that a choice is for, "schur-rows" of "mix@max-bodies=50+fm/schur-rows"; empty of an empty choice.
@@ -42,10 +44,6 @@ struct PartitionMetrics {
 // Throws std::invalid_argument when part_of_body has not one id per body or an id lies outside [0, n). Ids
 // that no body carries are not counted as parts.
 PartitionMetrics measure_partition(const BodyGraph& graph, std::span<const int> part_of_body);
-
-// A small vertex cover of the cut edges, (n) 1 for its bodies: greedy, most uncovered cut edges first, lowest index on
-// ties.
-std::vector<char> cut_cover(const BodyGraph& graph, std::span<const int> part_of_body);
 
 // Total weight of the edges whose ends lie in different parts.
 long cut_weight(const BodyGraph& graph, std::span<const int> part_of_body, EdgeWeight unit);

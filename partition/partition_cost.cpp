@@ -7,10 +7,10 @@ namespace cleave {
 
 PartitionCost::PartitionCost(const BodyGraph& graph, const KernelCost& cost, const Partition& start)
     : cost_(cost),
-      counter_(graph, cost.kernel, cost.active_share),
+      counter_(graph, cost.kernel, cost.active_share.of(graph)),
       partition_(start),
       bodies_(start.part_count),
-      features_(counter_.count(start.part_of_body, start.part_count)),
+      features_(counter_.count(start)),
       ms_(modelled_ms(features_, cost_)) {
   for (int i = 0; i < graph.body_count(); ++i) bodies_[start.part_of_body[i]].push_back(i);
 }
@@ -48,8 +48,7 @@ bool PartitionCost::count_parts(int from, int to) {
 }
 
 bool PartitionCost::count_all() {
-  CostFeatures former =
-      std::exchange(features_, counter_.count(partition_.part_of_body, partition_.part_count));
+  CostFeatures former = std::exchange(features_, counter_.count(partition_));
   if (is_cheaper()) return true;
   features_ = std::move(former);
   return false;

@@ -311,12 +311,13 @@ std::unique_ptr<Refiner> make_refiner(const Algorithm& algorithm) {
   return find_row(refiners(), "refiner", algorithm.name).make(algorithm.settings);
 }
 
+Algorithm read_partitioner(const std::string& text) { return read_row(partitioners(), "partitioner", text); }
+Algorithm read_refiner(const std::string& text) { return read_row(refiners(), "refiner", text); }
+
 std::unique_ptr<Partitioner> make_partitioner(const std::string& text) {
-  return make_partitioner(read_row(partitioners(), "partitioner", text));
+  return make_partitioner(read_partitioner(text));
 }
 
-std::unique_ptr<Refiner> make_refiner(const std::string& text) {
-  return make_refiner(read_row(refiners(), "refiner", text));
-}
+std::unique_ptr<Refiner> make_refiner(const std::string& text) { return make_refiner(read_refiner(text)); }
 
 }  // namespace cleave

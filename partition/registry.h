@@ -30,8 +30,12 @@ struct RefinerEntry : AlgorithmEntry {
 std::span<const PartitionerEntry> partitioners();
 std::span<const RefinerEntry> refiners();
 
-// "mix@tau-mix=0.3": makes the algorithm with these parameters and the defaults of all others. Throw
-// std::invalid_argument with one line that names the text and what is allowed.
+// "mix@tau-mix=0.3": the algorithm with these parameters and the defaults of all others. Throw std::invalid_argument with
+// one line that names the text and what is allowed.
+Algorithm read_partitioner(const std::string& text);
+Algorithm read_refiner(const std::string& text);
+
+// Made at once.
 std::unique_ptr<Partitioner> make_partitioner(const std::string& text);
 std::unique_ptr<Refiner> make_refiner(const std::string& text);
 

@@ -89,9 +89,8 @@ void set_times(const StepRecord& row, CostSample& sample) {
   add(CostGroup::sweeps_and_assembly, row.t_s_other_ms);
 }
 
-CostSample sample_of(const StepRecord& row, const std::vector<int>& part_of_body, const BodyGraph& graph,
-                     int cell) {
-  CostSample sample{graph, {part_of_body, row.parts}, kernel_of(row.solver), row.threads};
+CostSample sample_of(const StepRecord& row, const Partition& parts, const BodyGraph& graph, int cell) {
+  CostSample sample{graph, parts, kernel_of(row.solver), row.threads};
   sample.factorizations = row.factorizations;
   sample.cell = cell;
   set_times(row, sample);
@@ -107,10 +106,15 @@ struct Samples {
   int handed_over = 0;
 };
 
+Partition parts_of(Outcome&& outcome) {
+  const int count = count_parts(outcome.part_of_body);
+  return {std::move(outcome.part_of_body), count, {}, std::move(outcome.parent_of_part)};
+}
+
 // All cells of one problem, each in its fastest round so far.
 struct MeasuredProblem {
   std::vector<StepRecord> rows;
-  std::vector<std::vector<int>> part_of_body;  // the same in every round
+  std::vector<Partition> parts;  // the same in every round
 };
 
 void keep_fastest(MeasuredProblem&& round, MeasuredProblem& kept) {
@@ -138,7 +142,7 @@ std::vector<MeasuredProblem> measure_rounds(const std::vector<CalibrationProblem
     context.position_m = at_hand.position_m;
     MeasuredProblem round{std::vector<StepRecord>(combinations.size(), blank), {}};
     for (Outcome& outcome : measure_all(combinations, at_hand.problem, visit % count, round.rows))
-      round.part_of_body.push_back(std::move(outcome.part_of_body));
+      round.parts.push_back(parts_of(std::move(outcome)));
     keep_fastest(std::move(round), measured[visit % count]);
     line.update(visit + 1, kRounds * count);
   }
@@ -153,7 +157,7 @@ void add_samples(const MeasuredProblem& measured, const BodyGraph& graph, std::s
     if (row.fallbacks > 0) {
       ++handed_over;
     } else {
-      half.push_back(sample_of(row, measured.part_of_body[i], graph, static_cast<int>(first_cell + i)));
+      half.push_back(sample_of(row, measured.parts[i], graph, static_cast<int>(first_cell + i)));
     }
   }
 }

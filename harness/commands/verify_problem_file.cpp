@@ -125,7 +125,7 @@ void check_split(const ProblemFile& file, const StoredPartition& partition, cons
   const std::vector<int>& parts = again.parts.part_of_body;
   const int moved = static_cast<int>(std::inner_product(
       parts.begin(), parts.end(), partition.part_of_body.begin(), 0, std::plus<>(), std::not_equal_to<>()));
-  const bool same_tree = again.parent_of_part == partition.parent_of_part;
+  const bool same_tree = again.parts.parent_of_part == partition.parent_of_part;
   list.add(moved == 0 && same_tree, subject,
            counted + "; split again, " +
                (moved > 0    ? std::to_string(moved) + " bodies differ"

@@ -18,7 +18,7 @@ namespace {
 // What the solver is handed; a solver that ignores parts receives none.
 Parts solver_parts(const std::optional<Split>& split) {
   if (!split) return {};
-  Parts parts(split->parts.part_of_body, split->parent_of_part);
+  Parts parts(split->parts.part_of_body, split->parts.parent_of_part);
   parts.kernel = kernel_of_choice(split->parts.choice);
   return parts;
 }
@@ -83,7 +83,7 @@ void set_split(const Repeats& repeats, StepRecord& row) {
 
 void describe_split(const Split& split, Outcome& outcome) {
   outcome.part_of_body = split.parts.part_of_body;
-  outcome.parent_of_part = split.parent_of_part;
+  outcome.parent_of_part = split.parts.parent_of_part;
   outcome.origin = split.origin;
   outcome.choice = split.parts.choice;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 #include "harness/base/median.h"
@@ -14,8 +15,7 @@ namespace cleave {
 namespace {
 
 CostFeatures features_of(const CostSample& sample, double active_share) {
-  return CostCounter(sample.graph, sample.kernel, active_share)
-      .count(sample.parts.part_of_body, sample.parts.part_count);
+  return CostCounter(sample.graph, sample.kernel, active_share).count(sample.parts);
 }
 
 // Row by row, as nonnegative_least_squares() takes it.
@@ -59,7 +59,22 @@ ExpectedFactorizations fit_factorizations(std::span<const CostSample> samples,
     logarithm[k] = std::log(samples[k].factorizations);
   }
   const Vector fitted = least_absolute_error(terms, logarithm, of_any_sign);
-  return {fitted[0], fitted[1], fitted[2], fitted[3], std::max(1.0, std::exp((terms * fitted).maxCoeff()))};
+  return {fitted[0], fitted[1], fitted[2],
+          fitted[3], fitted[4], std::max(1.0, std::exp((terms * fitted).maxCoeff()))};
+}
+
+// Of the samples with a cut. A cut whose rows are all active is like one in which few are not.
+ExpectedActiveShare fit_active_share(std::span<const CostSample* const> samples) {
+  constexpr double kFew = 0.02;
+  if (samples.empty()) return {};
+  Matrix terms(samples.size(), std::tuple_size_v<decltype(ExpectedActiveShare::terms({}))>);
+  Vector logarithm(samples.size());
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    std::ranges::copy(ExpectedActiveShare::terms(samples[k]->graph), terms.row(k).begin());
+    logarithm[k] = -std::log(std::max(1 - samples[k]->active_share, kFew));
+  }
+  const Vector fitted = least_absolute_error(terms, logarithm, of_any_sign);
+  return {fitted[0], fitted[1], fitted[2]};
 }
 
 void fit_group(std::span<const CostSample> samples, std::span<const std::array<double, kCostTerms>> units,
@@ -77,6 +92,19 @@ void fit_group(std::span<const CostSample> samples, std::span<const std::array<d
   for (std::size_t i = 0; i < terms.size(); ++i) cost.cost[terms[i]] = fitted[i];
 }
 
+// Half of the solves take more than modelled and half of them less: what is so of the stages is not of their sum.
+void scale_to_whole(std::span<const CostSample> samples,
+                    std::span<const std::array<double, kCostTerms>> units, KernelCost& cost) {
+  std::vector<double> ratios;
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double modelled = std::inner_product(units[k].begin(), units[k].end(), cost.cost.begin(), 0.0);
+    if (modelled > 0) ratios.push_back(samples[k].t_s_ms / modelled);
+  }
+  if (ratios.empty()) return;
+  const double scale = lower_median(std::move(ratios));
+  for (double& coefficient : cost.cost) coefficient *= scale;
+}
+
 }  // namespace
 
 // n (n + 1) (2 n + 1) / 6 = (n + 1/2)^3 / 3 - (n + 1/2) / 12, of which the second term is lost in the first.
@@ -91,29 +119,28 @@ double interface_size(double flops) {
 }
 
 KernelCost fit_cost(std::span<const CostSample> samples) {
-  KernelCost cost{samples.front().kernel, samples.front().threads, {}, 1, {}};
-  std::vector<double> shares;
+  KernelCost cost{samples.front().kernel, samples.front().threads, {}, {}, {}};
+  std::vector<const CostSample*> cut;
   std::vector<FactorizationTerms> terms;  // of the factorisations
   std::vector<std::array<double, kCostTerms>> units;
   for (const CostSample& sample : samples) {
     const CostFeatures features = features_of(sample, sample.active_share);
-    if (features.cut_rows > 0) shares.push_back(sample.active_share);
+    if (cost.kernel == CostKernel::schur_rows && features.cut_rows > 0) cut.push_back(&sample);
     units.push_back(unit_costs_ms(features, sample.threads, sample.factorizations));
     terms.push_back(ExpectedFactorizations::terms(features));
   }
   cost.factorizations = fit_factorizations(samples, terms);
-  if (!shares.empty()) cost.active_share = lower_median(std::move(shares));
+  cost.active_share = fit_active_share(cut);
   for (int group = 0; group < kCostGroups; ++group) fit_group(samples, units, group, cost);
+  scale_to_whole(samples, units, cost);
   return cost;
 }
 
 double modelled_ms(const CostSample& sample, const KernelCost& cost, bool counted) {
+  if (!counted) return modelled_ms(features_of(sample, cost.active_share.of(sample.graph)), cost);
   KernelCost own = cost;
-  if (counted) {
-    own.factorizations = ExpectedFactorizations::always(sample.factorizations);
-    own.active_share = sample.active_share;
-  }
-  return modelled_ms(features_of(sample, own.active_share), own);
+  own.factorizations = ExpectedFactorizations::always(sample.factorizations);
+  return modelled_ms(features_of(sample, sample.active_share), own);
 }
 
 double median_error(std::span<const CostSample> samples, const KernelCost& cost, bool counted) {

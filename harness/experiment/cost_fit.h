@@ -25,10 +25,10 @@ struct CostSample {
 // The number of rows of a dense interface whose factorisation takes so many flops, as cost_features.h counts them.
 double interface_size(double flops);
 
-// Samples of one kernel and number of threads, at least one. The share of active rows is their median; the expected
-// factorisations are fitted to theirs by least absolute error of the logarithm. Each group of terms is fitted to the times of its
-// own stages, with what each sample really factored: nonnegative coefficients of least absolute error as a share of the
-// whole solve.
+// Samples of one kernel and number of threads, at least one. The expected factorisations and, of schur-rows, the expected share of
+// active rows are fitted to theirs by least absolute error of the logarithm. Each group of terms is fitted to the times of
+// its own stages, with what each sample really factored: nonnegative coefficients of least absolute error as a share of
+// the whole solve; then all are scaled, so that half of the solves take more than modelled.
 KernelCost fit_cost(std::span<const CostSample> samples);
 
 // Of one sample. counted: with its own number of factorisations and share of active rows; else with the expected ones,

@@ -38,7 +38,6 @@ void PartitionKeeper::take_over_parts(Split& split) const {
   if (std::ranges::count(changed, 1) == 0) {
     split.origin = PartitionOrigin::kept;
     split.before = split.parts = before_->parts;
-    split.parent_of_part = before_->parent_of_part;
     split.partition_ms = watch.lap_ms();
     return;
   }
@@ -68,12 +67,11 @@ Split PartitionKeeper::run(const Splitter& splitter, const StepProblem& problem,
   double thrown_away_ms = 0;
   if (!is_due(split.graph)) {
     take_over_parts(split);
-    const bool is_tree = !before_->parent_of_part.empty();
+    const bool is_tree = !before_->parts.parent_of_part.empty();
     if (!drifted(split) && !(is_tree && split.origin == PartitionOrigin::repaired)) return split;
     thrown_away_ms = split.partition_ms + split.refine_ms;
   }
   split.origin = PartitionOrigin::fresh;
-  split.parent_of_part.clear();
   split.refine_ms = 0;
   splitter.run(split);
   split.partition_ms += thrown_away_ms;
@@ -82,7 +80,7 @@ Split PartitionKeeper::run(const Splitter& splitter, const StepProblem& problem,
 
 void PartitionKeeper::remember(const Splitter& splitter, const Split& split) {
   if (!keeps()) return;
-  Before next{split.graph, split.parts, split.parent_of_part};
+  Before next{split.graph, split.parts};
   if (split.origin == PartitionOrigin::fresh) {
     next.most_bodies = std::max(splitter.most_bodies(split.parts), largest_part(split.parts));
     next.cut_share = cut_share(split.graph, split.parts);

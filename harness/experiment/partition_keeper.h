@@ -47,7 +47,6 @@ class PartitionKeeper {
   struct Before {
     BodyGraph graph;
     Partition parts;
-    std::vector<int> parent_of_part;
     int steps_since_fresh = 0;
     int most_bodies = 1;   // of a part that is repaired
     double cut_share = 0;  // of the last fresh parts

@@ -27,13 +27,13 @@ Partition SmallIslands::with_small(const Partition& large) const {
   return all;
 }
 
-NestedPartition SmallIslands::with_small(const NestedPartition& large) const {
-  NestedPartition all{with_small(large.leaves), {}};
-  if (all.leaves.part_count == 1) all.parent_of_part = {-1};
-  if (all.leaves.part_count <= 1) return all;
+Partition SmallIslands::with_small_in_tree(const Partition& large) const {
+  Partition all = with_small(large);
+  if (all.part_count == 1) all.parent_of_part = {-1};
+  if (all.part_count <= 1) return all;
   // Inner nodes come after all leaves. Without any, one that holds large islands and small ones is made.
-  const int nodes = static_cast<int>(large.parent_of_part.size()), leaves = large.leaves.part_count;
-  const int root = nodes > leaves ? nodes - 1 + small_count_ : all.leaves.part_count;
+  const int nodes = static_cast<int>(large.parent_of_part.size()), leaves = large.part_count;
+  const int root = nodes > leaves ? nodes - 1 + small_count_ : all.part_count;
   const auto add = [&](int node) {
     const int parent = large.parent_of_part[node];
     all.parent_of_part.push_back(parent < 0 ? -1 : parent + small_count_);

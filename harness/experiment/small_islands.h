@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "partition/body_graph.h"
-#include "partition/nested.h"
 #include "partition/partition.h"
 #include "partition/partitioner.h"
 
@@ -19,10 +18,10 @@ class SmallIslands {
   // Of the bodies in large islands alone.
   const BodyGraph& large() const { return large_; }
 
-  // Parts of `large` with the small islands after them.
+  // Parts of `large` with the small islands after them, in one level.
   Partition with_small(const Partition& large) const;
-  // The same, the small islands as further children of the root.
-  NestedPartition with_small(const NestedPartition& large) const;
+  // The same in a tree, the small islands as further children of the root.
+  Partition with_small_in_tree(const Partition& large) const;
 
  private:
   BodyGraph large_;

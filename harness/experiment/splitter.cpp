@@ -64,7 +64,7 @@ void Splitter::run_once(Split& split) const {
 }
 
 // refine_ms: grows by what was spent in the refiner.
-NestedPartition Splitter::nest(const BodyGraph& graph, bool refines, double& refine_ms) const {
+Partition Splitter::nest(const BodyGraph& graph, bool refines, double& refine_ms) const {
   const auto split_set = [&](const BodyGraph& set, int most_bodies) {
     Partition parts = set_splitter_->grow(set, most_bodies);
     Stopwatch watch;
@@ -75,17 +75,15 @@ NestedPartition Splitter::nest(const BodyGraph& graph, bool refines, double& ref
   const int max_bodies = set_splitter_->max_bodies(), arity = set_splitter_->arity();
   if (!skip_small_islands_) return split_by_recursion(graph, max_bodies, arity, split_set);
   const SmallIslands islands(graph, max_bodies);
-  return islands.with_small(split_by_recursion(islands.large(), max_bodies, arity, split_set));
+  return islands.with_small_in_tree(split_by_recursion(islands.large(), max_bodies, arity, split_set));
 }
 
 void Splitter::run_recursion(Split& split) const {
   Stopwatch watch;
-  NestedPartition nested = nest(split.graph, true, split.refine_ms);
+  split.parts = nest(split.graph, true, split.refine_ms);
   split.partition_ms = watch.lap_ms() - split.refine_ms;
-  split.parts = std::move(nested.leaves);
-  split.parent_of_part = std::move(nested.parent_of_part);
   double untimed_ms = 0;
-  split.before = nest(split.graph, false, untimed_ms).leaves;
+  split.before = nest(split.graph, false, untimed_ms);
 }
 
 Split Splitter::run(const StepProblem& problem, std::optional<int> step, const KnownBodies& known) const {

@@ -28,8 +28,7 @@ std::optional<PartitionOrigin> find_origin(const std::string& text);
 struct Split {
   BodyGraph graph;
   Partition before;  // as grown; by recursion, what it gives without refinement; repaired, before the moves
-  Partition parts;   // as refined; the leaves of a tree
-  std::vector<int> parent_of_part;  // the tree (solver/parts.h); empty: one level
+  Partition parts;   // as refined
   // By recursion sums over all sets; whatever is not refining counts as partitioning.
   double graph_ms = 0, partition_ms = 0, refine_ms = 0;
   PartitionOrigin origin = PartitionOrigin::fresh;
@@ -39,7 +38,8 @@ struct Split {
 struct SplitSetup {
   Algorithm partitioner, refiner;
   bool skip_small_islands = false;
-  // Children of a set, by recursion; none, or a partitioner without max-bodies (file, single, auto): one level.
+  // Children of a set, by recursion; none: one level, as parts of a partitioner without max-bodies are (file, single), or
+  // the tree that it makes itself (auto).
   std::optional<int> arity = {};
   BodyOrder order = {};     // numbers by which they are split
   std::string choice = {};  // that a partitioner made before and is to make again; empty: it chooses
@@ -68,7 +68,7 @@ class Splitter {
   void run_by_numbers(Split& split) const;
   void run_once(Split& split) const;
   void run_recursion(Split& split) const;
-  NestedPartition nest(const BodyGraph& graph, bool refines, double& refine_ms) const;
+  Partition nest(const BodyGraph& graph, bool refines, double& refine_ms) const;
   Partition grow(const BodyGraph& graph) const;
 
   std::unique_ptr<Partitioner> partitioner_;

@@ -50,7 +50,7 @@ TEST(BodyOrder, IsSplittingARenumberedProblem) {
       const Split expected = Splitter(setup).run(other);
       setup.order = order;
       const Split found = Splitter(setup).run(problem);
-      EXPECT_EQ(found.parent_of_part, expected.parent_of_part);
+      EXPECT_EQ(found.parts.parent_of_part, expected.parts.parent_of_part);
       for (int i = 0; i < 60; ++i) {
         EXPECT_EQ(found.parts.part_of_body[i], expected.parts.part_of_body[number[i]]) << partitioner;
         EXPECT_EQ(found.before.part_of_body[i], expected.before.part_of_body[number[i]]) << partitioner;

@@ -61,8 +61,11 @@ TEST_F(ChosenKernel, HasEveryStrategyThatRunsOnAnyKernel) {
   EXPECT_EQ(chosen_kernel_solvers(), (std::vector<std::string>{"pivot:chosen", "newton:chosen",
                                                                "interior-point:chosen", "auto:chosen"}));
   const auto names = [](const std::vector<Parameter>& parameters) { return names_of(std::span(parameters)); };
-  for (const std::string& kernel : kernels())
-    EXPECT_EQ(names(chosen_kernel_parameters("pivot:chosen")), names(solver_parameters("pivot:" + kernel)));
+  for (const std::string& kernel : kernels()) {
+    std::vector<std::string> of_kernel = names(solver_parameters("pivot:" + kernel));
+    std::erase(of_kernel, "arity");  // the tree is there when the kernel is chosen
+    EXPECT_EQ(names(chosen_kernel_parameters("pivot:chosen")), of_kernel);
+  }
   EXPECT_TRUE(chosen_kernel_parameters("pivot:dense").empty());
   EXPECT_THROW(read_named("solver", "alternate:chosen"), std::invalid_argument);
 }
@@ -101,24 +104,26 @@ TEST_F(ChosenKernel, ASessionOfAnotherKernelBeginsAnew) {
 TEST_F(ChosenKernel, PartsForNoKernelAreRefusedByName) {
   const StepProblem problem = ChosenKernel::problem(100);
   const auto chosen = make_solver(read_named("solver", "pivot:chosen"), {}, {});
-  for (const char* kernel : {"", "dense", "schur-nested"}) {
+  for (const char* kernel : {"", "dense", "schur-part"}) {
     Solution solution;
     const SolveSummary summary = solve(*chosen, problem, kernel, solution);
     EXPECT_EQ(summary.status, SolveStatus::refused);
     const std::string named = *kernel == 0 ? "no kernel" : "kernel '" + std::string(kernel) + "'";
     EXPECT_EQ(summary.message, "kernel chosen: parts are for " + named +
-                                   ", allowed: schur-rows, schur-bodies, monolithic, of which partitioner "
-                                   "auto chooses");
+                                   ", allowed: schur-rows, schur-bodies, schur-nested, monolithic, of which "
+                                   "partitioner auto chooses");
     EXPECT_EQ(solution.impulse, problem.warm_impulse);
   }
 }
 
-// By which a solve of one kernel costs 1 us and of the others 2.
-std::string calibration_of_cheapest(CostKernel cheapest, const fs::path& path) {
+// By which a solve of one kernel costs 1 us and of the others 2; and, where flops are to cost something, factoring its parts.
+std::string calibration_of_cheapest(CostKernel cheapest, const fs::path& path, double ns_per_flop = 0) {
   std::vector<KernelCost> costs;
-  for (const CostKernel kernel : {CostKernel::schur_rows, CostKernel::schur_bodies, CostKernel::monolithic}) {
-    costs.push_back({kernel, 1, 1, 1, {}});
-    costs.back().cost[0] = kernel == cheapest ? 1 : 2;
+  for (std::size_t k = 0; k < cost_kernel_names().size(); ++k) {
+    const CostKernel kernel = static_cast<CostKernel>(k);
+    costs.push_back({kernel, 1, ExpectedFactorizations::always(1), {}, {}});
+    costs.back().cost[0] = kernel == cheapest ? 1 : 1e9;
+    costs.back().cost[7] = ns_per_flop;
   }
   std::ofstream(path, std::ios::binary) << calibration_text({}, costs);
   return path;
@@ -163,6 +168,40 @@ TEST_F(ChosenKernel, RunsTheKernelOfTheChoice) {
     }
     for (const auto& [step, of_step] : hashes) EXPECT_EQ(of_step.size(), 1u) << step;
   }
+}
+
+// The tree that was chosen is what schur-nested works on, is stored, and is made again from the choice.
+TEST_F(ChosenKernel, ATreeIsChosenAndKept) {
+  const TemporaryDirectory directory;
+  const std::string file = calibration_of_cheapest(CostKernel::schur_nested, directory / "nested.toml", 1e-3);
+  const fs::path out = directory / "out";
+  const Arguments replay = {"replay",
+                            ChosenKernel::file(100),
+                            "--partitioner",
+                            "auto",
+                            "--refiner",
+                            "none",
+                            "--cost-kernel",
+                            "any",
+                            "--calibration",
+                            file,
+                            "--solver",
+                            "pivot:chosen,pivot:schur-nested,pivot:schur-bodies",
+                            "--write-solutions",
+                            "--out",
+                            out};
+  ASSERT_EQ(run_cleave(replay).exit_code, 0);
+  const CsvTable rows = read_csv(out / "steps.csv");
+  ASSERT_EQ(rows.rows.size(), 3u);
+  EXPECT_EQ(rows.at(0, "kernel"), "schur-nested");
+  const std::string choice = rows.at(0, "auto_choice");
+  EXPECT_NE(choice.find("@max-bodies=10"), std::string::npos) << choice;
+  EXPECT_NE(choice.find("/schur-nested"), std::string::npos) << choice;
+  EXPECT_EQ(rows.at(0, "solution_hash"), rows.at(1, "solution_hash"));
+  EXPECT_EQ(rows.at(0, "parts"), rows.at(2, "parts"));
+  ProblemFile written = read_problem_file(out / fs::path(ChosenKernel::file(100)).filename());
+  for (const auto& [label, partition] : written.partitions)
+    EXPECT_GT(partition.parent_of_part.size(), partition.part_of_body.size() / 10) << label;
 }
 
 const Arguments kAny = {"--partitioner", "auto@cost-kernel=any,auto@cost-kernel=schur-bodies",

@@ -117,8 +117,8 @@ CostSample sample_with(const KernelCost& truth, std::uint64_t seed) {
   sample.factorizations = random.integer(2, 9);
   sample.active_share = random.uniform(0.3, 0.9);
   sample.t_s_ms = modelled_ms(sample, truth, true);
-  const CostFeatures features = CostCounter(sample.graph, truth.kernel, sample.active_share)
-                                    .count(sample.parts.part_of_body, sample.parts.part_count);
+  const CostFeatures features =
+      CostCounter(sample.graph, truth.kernel, sample.active_share).count(sample.parts);
   const auto units = unit_costs_ms(features, truth.threads, sample.factorizations);
   for (int t = 0; t < kCostTerms; ++t)
     sample.group_ms[static_cast<int>(cost_terms()[t].group)] += truth.cost[t] * units[t];
@@ -128,7 +128,7 @@ CostSample sample_with(const KernelCost& truth, std::uint64_t seed) {
 TEST(CostFit, FindsTheCostsThatMadeTheTimes) {
   for (const int threads : {1, 2}) {
     KernelCost truth{
-        CostKernel::schur_rows, threads, {}, 1, {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5, 300}};
+        CostKernel::schur_rows, threads, {}, {}, {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5, 300}};
     std::vector<CostSample> fitted, others;
     for (std::uint64_t seed = 0; seed < 60; ++seed)
       (seed % 2 == 0 ? fitted : others).push_back(sample_with(truth, seed));
@@ -136,10 +136,22 @@ TEST(CostFit, FindsTheCostsThatMadeTheTimes) {
     EXPECT_LT(median_error(others, found, true), 1e-3);
     EXPECT_GT(median_error(others, found, false), 1e-2);  // their factorisations are drawn
     EXPECT_GE(found.factorizations.most, 2);
-    EXPECT_LE(found.factorizations.most, 9);
-    EXPECT_LE(found.active_share, 0.9);
+    EXPECT_LE(found.factorizations.most, 15);
   }
   EXPECT_TRUE(std::isnan(median_error({}, {}, true)));
+}
+
+// Time that no stage has, of most solves a quarter, is spread over all terms.
+TEST(CostFit, HalfOfTheSolvesTakeMoreThanModelled) {
+  const KernelCost truth{
+      CostKernel::schur_rows, 1, {}, {}, {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5, 300}};
+  std::vector<CostSample> samples;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    samples.push_back(sample_with(truth, seed));
+    samples.back().t_s_ms *= seed % 4 == 0 ? 2 : 1.25;
+  }
+  const KernelCost found = fit_cost(samples);
+  EXPECT_LT(median_error(samples, found, true), 1e-3);
 }
 
 // Two solves of a cell of which one takes a fifth less than modelled and one a fifth more, and a cell of its own.
@@ -147,7 +159,7 @@ TEST(CostFit, StepsOfACellMakeUpForEachOther) {
   const KernelCost truth{CostKernel::schur_rows,
                          1,
                          ExpectedFactorizations::always(3),
-                         0.5,
+                         ExpectedActiveShare::always(0.5),
                          {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5, 300}};
   std::vector<CostSample> samples;
   for (const double share : {0.8, 1.2, 1.1}) {
@@ -163,16 +175,15 @@ TEST(CostFit, StepsOfACellMakeUpForEachOther) {
 
 // As many as the law says, rounded, but for a few steps that factor ten times as often.
 TEST(CostFit, FindsHowOftenAStepFactors) {
-  const ExpectedFactorizations law{-0.6, 0.9, -0.5, 0.4, 50};
+  const ExpectedFactorizations law{-0.6, 0.9, -0.5, 0.4, 0.1, 50};
   const KernelCost truth{
-      CostKernel::schur_rows, 1, {}, 1, {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5, 300}};
+      CostKernel::schur_rows, 1, {}, {}, {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5, 300}};
   std::vector<CostSample> samples;
   std::vector<CostFeatures> features;
   for (std::uint64_t seed = 0; seed < 80; ++seed) {
     samples.push_back(sample_with(truth, seed));
     CostSample& sample = samples.back();
-    features.push_back(CostCounter(sample.graph, truth.kernel, sample.active_share)
-                           .count(sample.parts.part_of_body, sample.parts.part_count));
+    features.push_back(CostCounter(sample.graph, truth.kernel, sample.active_share).count(sample.parts));
     sample.factorizations = static_cast<int>(std::lround(law.of(features.back()))) * (seed % 9 == 0 ? 10 : 1);
   }
   const ExpectedFactorizations found = fit_cost(samples).factorizations;
@@ -185,24 +196,43 @@ TEST(CostFit, FindsHowOftenAStepFactors) {
   EXPECT_NEAR(found.most, most, 1e-9);
 }
 
+// As many active rows as the law says, but for a few steps in which all are.
+TEST(CostFit, FindsTheShareOfActiveRows) {
+  const ExpectedActiveShare law{0.9, 1.7, 0.3};
+  const KernelCost truth{
+      CostKernel::schur_rows, 1, {}, {}, {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5, 300}};
+  std::vector<CostSample> samples;
+  for (std::uint64_t seed = 0; seed < 80; ++seed) {
+    samples.push_back(sample_with(truth, seed));
+    samples.back().active_share = seed % 9 == 0 ? 1 : law.of(samples.back().graph);
+  }
+  const ExpectedActiveShare found = fit_cost(samples).active_share;
+  for (const CostSample& sample : samples) EXPECT_NEAR(found.of(sample.graph), law.of(sample.graph), 0.02);
+}
+
 // Steps that are all alike tell nothing about rows and degree.
 TEST(CostFit, IsFiniteWhereStepsAreAlike) {
   const KernelCost truth{
-      CostKernel::schur_rows, 1, {}, 1, {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5, 300}};
+      CostKernel::schur_rows, 1, {}, {}, {20, 900, 50, 80, 0.4, 40, 30, 0.15, 0.1, 0.05, 0.5, 300}};
   const CostSample sample = sample_with(truth, 3);
   const std::vector<CostSample> samples(5, sample);
-  const CostFeatures features = CostCounter(sample.graph, truth.kernel, sample.active_share)
-                                    .count(sample.parts.part_of_body, sample.parts.part_count);
+  const CostFeatures features =
+      CostCounter(sample.graph, truth.kernel, sample.active_share).count(sample.parts);
   EXPECT_NEAR(fit_cost(samples).factorizations.of(features), sample.factorizations, 1e-9);
 }
 
-// Orders of elimination differ, so do the counts by some percent; under schur-bodies the covers do too.
+bool has_covers(CostKernel kernel) {
+  return kernel == CostKernel::schur_bodies || kernel == CostKernel::schur_nested;
+}
+
+// Orders of elimination differ, so do the counts by some percent; where bodies are cut the covers do too.
 void expect_near_the_kernels(const StepRecord& row, const Outcome& outcome, const BodyGraph& graph) {
   const auto names = cost_kernel_names();
   const auto kernel = static_cast<CostKernel>(std::ranges::find(names, row.kernel) - names.begin());
   const bool whole = kernel == CostKernel::monolithic;
-  const std::vector<int> parts = whole ? std::vector<int>(graph.body_count(), 0) : outcome.part_of_body;
-  const CostFeatures features = CostCounter(graph, kernel, 1).count(parts, whole ? 1 : row.parts);
+  const Partition parts = whole ? Partition{std::vector<int>(graph.body_count(), 0), 1}
+                                : Partition{outcome.part_of_body, row.parts, {}, outcome.parent_of_part};
+  const CostFeatures features = CostCounter(graph, kernel, 1).count(parts);
   double flops = 0, counted_mflop = row.factor_mflop_local;
   for (const PartCost& part : features.parts) flops += part.factor_flops;
   EXPECT_EQ(features.rows, row.rows);
@@ -213,20 +243,20 @@ void expect_near_the_kernels(const StepRecord& row, const Outcome& outcome, cons
     flops += features.interface_flops;
     counted_mflop += row.factor_mflop_interface;
   }
-  EXPECT_NEAR(1e-6 * flops / counted_mflop, 1, kernel == CostKernel::schur_bodies ? 0.35 : 0.1);
+  EXPECT_NEAR(1e-6 * flops / counted_mflop, 1, has_covers(kernel) ? 0.35 : 0.1);
 }
 
 TEST(CostFeatures, AreNearWhatTheKernelsCount) {
-  const RunOptions options =
-      parse_run_options({{"scene", "rock_pile"},
-                         {"bodies", "120"},
-                         {"partitioner", "mindp,mix"},
-                         {"refiner", "none,fm"},
-                         {"solver", "pivot:schur-rows,pivot:schur-bodies,pivot:monolithic"},
-                         {"repeats", "1"},
-                         {"steps", "120"},
-                         {"measure-every", "40"},
-                         {"out", "-"}});
+  const RunOptions options = parse_run_options(
+      {{"scene", "rock_pile"},
+       {"bodies", "120"},
+       {"partitioner", "mindp,mix"},
+       {"refiner", "none,fm"},
+       {"solver", "pivot:schur-rows,pivot:schur-bodies,pivot:schur-nested,pivot:monolithic"},
+       {"repeats", "1"},
+       {"steps", "120"},
+       {"measure-every", "40"},
+       {"out", "-"}});
   int rows = 0;
   const std::atomic<bool> stop = false;
   const auto observe = [&](const ObservedStep& step) {

@@ -49,10 +49,13 @@ TEST(CostOptions, AnotherCalibrationIsAnotherRunAndAnotherChoice) {
   const TemporaryDirectory directory;
   const std::string file = directory / "own.toml";
   std::ofstream(file)
-      << "schema = \"cleave-calibration-3\"\n\n[schur-rows.threads-1]\nfactorizations_constant = 0\n"
-         "factorizations_per_log_body = 0\nfactorizations_per_degree = 0\nfactorizations_per_mass_spread = "
+      << "schema = \"cleave-calibration-4\"\n\n[schur-rows.threads-1]\nfactorizations_constant = 0\n"
+         "factorizations_per_fixed_row = 0\nfactorizations_per_log_body = 0\nfactorizations_per_degree = "
+         "0\nfactorizations_per_mass_spread = "
          "0\nfactorizations_most = 1\n"
-         "active_share = 1\nus_per_solve = 0\nns_per_row = 0\nns_per_row_prepared = 0\nns_per_block = "
+         "active_share_constant = 0\nactive_share_per_log_degree = 0\nactive_share_per_constraint = "
+         "0\nus_per_solve = 0\nns_per_row = "
+         "0\nns_per_row_prepared = 0\nns_per_block = "
          "0\nus_per_part = 1\n"
          "ns_per_row_and_pass = 0\nns_per_local_block = 0\nns_per_local_flop = 0\n"
          "ns_per_forming_flop = 0\nns_per_interface_flop = 0\nns_per_entry = 0\nns_per_body = 0\n";

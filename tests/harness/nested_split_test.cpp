@@ -45,7 +45,8 @@ SplitSetup setup(const std::string& partitioner, const std::string& refiner, int
 }
 
 std::string tree_error(const Split& split) {
-  return PartsCheck().find_error({split.parts.part_of_body, split.parent_of_part}, split.graph.body_count());
+  return PartsCheck().find_error({split.parts.part_of_body, split.parts.parent_of_part},
+                                 split.graph.body_count());
 }
 
 TEST(NestedSplit, HandsOverATreeForEveryPair) {
@@ -59,7 +60,7 @@ TEST(NestedSplit, HandsOverATreeForEveryPair) {
       const PartitionMetrics metrics = measure_partition(split.graph, split.parts.part_of_body);
       EXPECT_EQ(metrics.parts, split.parts.part_count);
       EXPECT_GE(metrics.parts, 78 / 4);
-      EXPECT_GT(split.parent_of_part.size(), split.parts.part_of_body.size() / 4);
+      EXPECT_GT(split.parts.parent_of_part.size(), split.parts.part_of_body.size() / 4);
       EXPECT_GT(split.partition_ms, 0);
       EXPECT_GE(split.refine_ms, 0);
       EXPECT_EQ(measure_partition(split.graph, split.before.part_of_body).parts, split.before.part_count);
@@ -79,8 +80,9 @@ TEST(NestedSplit, BeforeIsWhatNoRefinerTouched) {
 TEST(NestedSplit, OneLevelHasNoTree) {
   const StepProblem problem = chains({40});
   const SplitSetup flat{read_named("partitioner", "mix@max-bodies=5"), read_named("refiner", "fm")};
-  EXPECT_TRUE(Splitter(flat).run(problem).parent_of_part.empty());
-  EXPECT_EQ(Splitter(setup("mix@max-bodies=40", "fm", 2)).run(problem).parent_of_part, std::vector<int>{-1});
+  EXPECT_TRUE(Splitter(flat).run(problem).parts.parent_of_part.empty());
+  EXPECT_EQ(Splitter(setup("mix@max-bodies=40", "fm", 2)).run(problem).parts.parent_of_part,
+            std::vector<int>{-1});
 }
 
 TEST(NestedSplit, SmallIslandsHangFromTheRoot) {
@@ -90,20 +92,21 @@ TEST(NestedSplit, SmallIslandsHangFromTheRoot) {
     const Split split = Splitter({partitioner, read_named("refiner", "fm"), true, 2}).run(problem);
     EXPECT_EQ(tree_error(split), "");
     const std::vector<int>& part = split.parts.part_of_body;
-    const int root = static_cast<int>(split.parent_of_part.size()) - 1, last = split.parts.part_count - 1;
+    const int root = static_cast<int>(split.parts.parent_of_part.size()) - 1,
+              last = split.parts.part_count - 1;
     for (const auto& [body, leaf] : {std::pair{0, last - 2}, {2, last - 2}, {43, last - 1}, {45, last}}) {
       EXPECT_EQ(part[body], leaf) << "body " << body;
-      EXPECT_EQ(split.parent_of_part[leaf], root);
+      EXPECT_EQ(split.parts.parent_of_part[leaf], root);
     }
     const Split alone = Splitter({partitioner, read_named("refiner", "fm"), false, 2}).run(chains({40}));
     EXPECT_TRUE(std::equal(part.begin() + 3, part.begin() + 43, alone.parts.part_of_body.begin()));
-    EXPECT_EQ(alone.parent_of_part.size() + 3, split.parent_of_part.size());
+    EXPECT_EQ(alone.parts.parent_of_part.size() + 3, split.parts.parent_of_part.size());
   }
 }
 
 TEST(NestedSplit, SmallIslandsAloneAreAllOfTheTree) {
   const auto parents = [](const std::vector<int>& lengths) {
-    return Splitter(setup("mix@max-bodies=5", "fm", 2, true)).run(chains(lengths)).parent_of_part;
+    return Splitter(setup("mix@max-bodies=5", "fm", 2, true)).run(chains(lengths)).parts.parent_of_part;
   };
   using Parents = std::vector<int>;
   EXPECT_EQ(parents({}), Parents());
@@ -121,7 +124,7 @@ TEST(NestedSplit, PartsWithoutMaxBodiesAreOneLevel) {
     const Split once =
         Splitter({read_named("partitioner", partitioner), read_named("refiner", "none")}).run(chains({3}));
     EXPECT_EQ(nested.parts.part_of_body, once.parts.part_of_body) << partitioner;
-    EXPECT_TRUE(nested.parent_of_part.empty()) << partitioner;
+    EXPECT_TRUE(nested.parts.parent_of_part.empty()) << partitioner;
   }
 }
 
@@ -135,23 +138,23 @@ TEST(NestedSplit, GroupsAreTheFirstLevelOfATree) {
   };
   const Split whole = split("semantic@max-bodies=3", false);
   EXPECT_EQ(whole.parts.part_of_body, group);
-  EXPECT_EQ(whole.parent_of_part, (std::vector<int>{2, 2, -1}));
+  EXPECT_EQ(whole.parts.parent_of_part, (std::vector<int>{2, 2, -1}));
   // A small group is no leftover that another would take in.
   std::vector<int> three = group;
   three[4] = 2;
   const Split small =
       Splitter(setup("semantic@max-bodies=3", "none", 2)).run(problem, std::nullopt, {{}, three});
   EXPECT_EQ(small.parts.part_of_body, (std::vector<int>{0, 0, 0, 0, 1, 2, 2, 2, 2, 2, 2, 2}));
-  EXPECT_EQ(small.parent_of_part, (std::vector<int>{3, 3, 3, -1}));
+  EXPECT_EQ(small.parts.parent_of_part, (std::vector<int>{3, 3, 3, -1}));
   const Split runs = split("semantic@max-bodies=4@split=chunks", false);
   EXPECT_EQ(runs.parts.part_of_body, (std::vector<int>{0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
   EXPECT_EQ(tree_error(runs), "");
   // One group alone is one leaf, beside which small islands hang from a root of their own.
   std::ranges::fill(group, 0);
-  EXPECT_EQ(split("semantic@max-bodies=3", false).parent_of_part, std::vector<int>{-1});
+  EXPECT_EQ(split("semantic@max-bodies=3", false).parts.parent_of_part, std::vector<int>{-1});
   const Split beside = Splitter(setup("semantic@max-bodies=3", "none", 2, true))
                            .run(chains({9, 3}), std::nullopt, {{}, group});
-  EXPECT_EQ(beside.parent_of_part, (std::vector<int>{2, 2, -1}));
+  EXPECT_EQ(beside.parts.parent_of_part, (std::vector<int>{2, 2, -1}));
   EXPECT_EQ(beside.parts.part_of_body, (std::vector<int>{0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1}));
 }
 

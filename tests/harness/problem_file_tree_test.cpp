@@ -146,7 +146,8 @@ class VerifiedTree : public ::testing::Test {
     const SplitSetup setup{read_named("partitioner", "mix@max-bodies=5"), read_named("refiner", "fm"), false,
                            2};
     Split split = Splitter(setup).run(file_.problem, file_.step);
-    file_.partitions[label_] = stored_partition(setup, split.parts.part_of_body, split.parent_of_part, split.origin);
+    file_.partitions[label_] =
+        stored_partition(setup, split.parts.part_of_body, split.parts.parent_of_part, split.origin);
   }
 
   StoredPartition& tree() { return file_.partitions.at(label_); }

@@ -11,6 +11,8 @@
 #include "partition/calibration.h"
 #include "partition/cost_features.h"
 #include "partition/cost_model.h"
+#include "partition/cut_cover.h"
+#include "partition/nested.h"
 #include "partition/partition_cost.h"
 #include "partition/registry.h"
 #include "tests/partition/slow_cost.h"
@@ -20,7 +22,8 @@ namespace cleave::partition_test {
 namespace {
 
 constexpr std::uint64_t kSeeds = 150;
-constexpr CostKernel kKernels[] = {CostKernel::schur_rows, CostKernel::schur_bodies, CostKernel::monolithic};
+constexpr CostKernel kKernels[] = {CostKernel::schur_rows, CostKernel::schur_bodies, CostKernel::schur_nested,
+                                   CostKernel::monolithic};
 
 void expect_near(double expected, double actual, const char* what) {
   EXPECT_NEAR(expected, actual, 1e-9 * (1 + std::abs(expected))) << what;
@@ -29,6 +32,7 @@ void expect_near(double expected, double actual, const char* what) {
 void expect_equal(const CostFeatures& expected, const CostFeatures& actual) {
   EXPECT_EQ(expected.bodies, actual.bodies);
   EXPECT_EQ(expected.edges, actual.edges);
+  EXPECT_EQ(expected.fixed_rows, actual.fixed_rows);
   EXPECT_NEAR(expected.mass_spread, actual.mass_spread, 1e-6);
   EXPECT_EQ(expected.rows, actual.rows);
   EXPECT_EQ(expected.cut_rows, actual.cut_rows);
@@ -50,18 +54,65 @@ void expect_equal(const CostFeatures& expected, const CostFeatures& actual) {
   }
 }
 
+// Two or three nodes get a parent, again and again, until one is left. Empty of no part.
+std::vector<int> random_tree(Random& random, int parts) {
+  std::vector<int> parent_of_part(parts, -1), without_parent(parts);
+  std::iota(without_parent.begin(), without_parent.end(), 0);
+  while (without_parent.size() > 1) {
+    const int node = static_cast<int>(parent_of_part.size());
+    const int children = random.integer(2, std::min(3, static_cast<int>(without_parent.size())));
+    for (int child = 0; child < children; ++child) {
+      const int place = random.integer(0, static_cast<int>(without_parent.size()) - 1);
+      parent_of_part[without_parent[place]] = node;
+      without_parent.erase(without_parent.begin() + place);
+    }
+    parent_of_part.push_back(-1);
+    without_parent.push_back(node);
+  }
+  return parent_of_part;
+}
+
+TEST(SeparatorNodes, are_those_of_the_slow_twin) {
+  int inner = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const Bodies bodies = random_bodies(seed);
+    SCOPED_TRACE(describe(bodies) + ", seed " + std::to_string(seed));
+    const BodyGraph graph = bodies.graph();
+    Random random(seed);
+    Partition partition = random_partition(random, graph.body_count());
+    if (random.chance(0.8)) partition.parent_of_part = random_tree(random, partition.part_count);
+    const std::vector<int> nodes =
+        separator_nodes(graph, partition.part_of_body, partition.part_count, partition.parent_of_part);
+    EXPECT_EQ(nodes, slow_separator_nodes(graph, partition));
+    for (const int node : nodes) inner += node > partition.part_count;
+  }
+  EXPECT_GT(inner, 100);
+}
+
+// Of one level the interface is that of schur-bodies.
+TEST(CostFeatures, of_nested_parts_in_one_level_are_those_of_schur_bodies) {
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    const BodyGraph graph = random_bodies(seed).graph();
+    Random random(seed);
+    const Partition partition = random_partition(random, graph.body_count());
+    CostFeatures nested = CostCounter(graph, CostKernel::schur_nested, 1).count(partition);
+    expect_equal(CostCounter(graph, CostKernel::schur_bodies, 1).count(partition), nested);
+  }
+}
+
 TEST(CostFeatures, are_those_of_the_slow_twin) {
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const Bodies bodies = random_bodies(seed);
     SCOPED_TRACE(describe(bodies) + ", seed " + std::to_string(seed));
     const BodyGraph graph = bodies.graph();
     Random random(seed);
-    const Partition partition = random_partition(random, graph.body_count());
+    Partition partition = random_partition(random, graph.body_count());
+    if (random.chance(0.7)) partition.parent_of_part = random_tree(random, partition.part_count);
     const double share = random.real(0, 1);
     for (const CostKernel kernel : kKernels) {
       SCOPED_TRACE(cost_kernel_names()[static_cast<int>(kernel)]);
-      expect_equal(slow_cost_features(graph, partition.part_of_body, partition.part_count, kernel, share),
-                   CostCounter(graph, kernel, share).count(partition.part_of_body, partition.part_count));
+      expect_equal(slow_cost_features(graph, partition, kernel, share),
+                   CostCounter(graph, kernel, share).count(partition));
     }
   }
 }
@@ -70,8 +121,7 @@ TEST(CostFeatures, are_those_of_the_slow_twin) {
 TEST(CostFeatures, by_hand) {
   const std::vector<ConstraintLink> links = {{0, 1, 3}, {1, 2, 3}, {0, -1, 3}, {3, -1, 6}};
   const BodyGraph graph(std::vector{1.0, 1.0, 1.0, 1.0}, links);
-  const CostFeatures features =
-      CostCounter(graph, CostKernel::schur_rows, 1).count(std::vector{0, 0, 1, 1}, 2);
+  const CostFeatures features = CostCounter(graph, CostKernel::schur_rows, 1).count({{0, 0, 1, 1}, 2});
   EXPECT_EQ(features.rows, 15);
   EXPECT_EQ(features.cut_rows, 3);
   EXPECT_EQ(features.parts[0].rows, 6);
@@ -100,9 +150,8 @@ TEST(CostModel, is_the_sum_of_its_terms) {
   Random random(7);
   const BodyGraph graph = pile(random, 5, 5, 3).graph();
   const Partition partition = random_partition(random, graph.body_count());
-  const CostFeatures features =
-      CostCounter(graph, CostKernel::schur_rows, 0.5).count(partition.part_of_body, partition.part_count);
-  KernelCost cost{CostKernel::schur_rows, 1, ExpectedFactorizations::always(3), 0.5, {}};
+  const CostFeatures features = CostCounter(graph, CostKernel::schur_rows, 0.5).count(partition);
+  KernelCost cost{CostKernel::schur_rows, 1, ExpectedFactorizations::always(3), {}, {}};
   std::iota(cost.cost.begin(), cost.cost.end(), 1.0);
   double local = 0, forming = 0, blocks = 0, entries = features.interface_entries;
   for (const PartCost& part : features.parts) {
@@ -119,15 +168,29 @@ TEST(CostModel, is_the_sum_of_its_terms) {
 
 TEST(ExpectedFactorizations, follow_bodies_degree_and_masses_within_what_was_fitted) {
   CostFeatures features;
-  features.bodies = 10, features.edges = 25, features.mass_spread = 2;
-  const ExpectedFactorizations law{0.5, 0.25, -0.1, 0.125, 5};
-  EXPECT_NEAR(law.of(features), std::exp(0.5 - 0.25 + 0.25) * std::pow(10, 0.25), 1e-12);
+  features.bodies = 10, features.edges = 25, features.mass_spread = 2, features.fixed_rows = 40;
+  const ExpectedFactorizations law{0.5, 0.25, -0.1, 0.125, 0.0625, 5};
+  EXPECT_NEAR(law.of(features), std::exp(0.5 - 0.25 + 0.25 + 0.25) * std::pow(10, 0.25), 1e-12);
   features.mass_spread = 20;
   EXPECT_EQ(law.of(features), 5);
   features.edges = 1000;
   EXPECT_EQ(law.of(features), 1);
   EXPECT_EQ(law.of({}), std::exp(0.5));  // no bodies
   EXPECT_NEAR(ExpectedFactorizations::always(7).of(features), 7, 1e-12);
+}
+
+TEST(ExpectedActiveShare, follows_degree_and_contacts_within_zero_and_one) {
+  const auto chain = [](int edges, int constraints) {
+    std::vector<ConstraintLink> links = {{0, -1, 3}};
+    for (int k = 0; k < edges * constraints; ++k) links.push_back({k % edges, k % edges + 1, 3});
+    return BodyGraph(std::vector(8, 1.0), links);
+  };
+  const ExpectedActiveShare law{1.25, 2, 0.125};
+  EXPECT_NEAR(law.of(chain(7, 2)), 1 - std::exp(-1.5) * std::pow(8.0 / 7, 2), 1e-12);
+  EXPECT_EQ(law.of(chain(1, 1)), 0);  // exp(-1.375) 64 is more than 1
+  EXPECT_NEAR(law.of(chain(0, 1)), 1 - std::exp(-1.25), 1e-12);
+  EXPECT_NEAR(ExpectedActiveShare::always(0.7).of(chain(3, 1)), 0.7, 1e-12);
+  EXPECT_EQ(ExpectedActiveShare::always(1).of(chain(3, 1)), 1);
 }
 
 TEST(PartitionCost, stays_what_it_is_from_scratch) {
@@ -137,7 +200,11 @@ TEST(PartitionCost, stays_what_it_is_from_scratch) {
       Random random(seed);
       const BodyGraph graph = pile(random, 4, 4, 2).graph();
       Partition partition = random_partition(random, graph.body_count());
-      KernelCost cost{kernel, random.integer(1, 2), ExpectedFactorizations::always(3), 0.4, {}};
+      KernelCost cost{kernel,
+                      random.integer(1, 2),
+                      ExpectedFactorizations::always(3),
+                      ExpectedActiveShare::always(0.4),
+                      {}};
       std::iota(cost.cost.begin(), cost.cost.end(), 1.0);
       PartitionCost time(graph, cost, partition);
       for (int k = 0; k < 60; ++k) {
@@ -149,10 +216,8 @@ TEST(PartitionCost, stays_what_it_is_from_scratch) {
         if (moved) partition.part_of_body[body] = part;
         moves += moved;
         EXPECT_EQ(moved, time.ms() < before);
-        ASSERT_EQ(
-            time.ms(),
-            modelled_ms(CostCounter(graph, kernel, 0.4).count(partition.part_of_body, partition.part_count),
-                        cost))
+        ASSERT_EQ(time.ms(),
+                  modelled_ms(CostCounter(graph, kernel, cost.active_share.of(graph)).count(partition), cost))
             << "seed " << seed;
       }
     }
@@ -179,8 +244,10 @@ LeastChoice least_choice(const BodyGraph& graph, const KernelCost& cost) {
   const auto look = [&](const std::string& partitioner, int max_bodies, const std::string& refiner) {
     Partition parts = make_partitioner(partitioner)->run(graph);
     make_refiner(refiner)->run(graph, max_bodies, parts);
-    const double ms = modelled_ms(
-        CostCounter(graph, cost.kernel, cost.active_share).count(parts.part_of_body, parts.part_count), cost);
+    if (cost.kernel == CostKernel::schur_nested && partitioner != "single")
+      parts = SetSplitter(read_partitioner(partitioner), read_refiner(refiner), 2).run(graph);
+    const double ms =
+        modelled_ms(CostCounter(graph, cost.kernel, cost.active_share.of(graph)).count(parts), cost);
     if (best.empty() || ms < least_ms) best = partitioner + "+" + refiner, least_ms = ms;
   };
   look("single", graph.body_count(), "none");
@@ -194,7 +261,8 @@ LeastChoice least_choice(const BodyGraph& graph, const KernelCost& cost) {
 
 TEST(Auto, takes_what_is_cheapest_by_the_model) {
   const Calibration& shipped = known_calibration(read_calibration("calibration", "shipped"));
-  for (const CostKernel kernel : {CostKernel::schur_rows, CostKernel::schur_bodies}) {
+  for (const CostKernel kernel :
+       {CostKernel::schur_rows, CostKernel::schur_bodies, CostKernel::schur_nested}) {
     for (const int threads : {1, 2}) {
       for (const int height : {1, 3, 9}) {
         Random random(3);
@@ -216,8 +284,7 @@ TEST(Auto, takes_the_cheapest_kernel_where_any_may_be) {
       Random random(3);
       const BodyGraph graph = pile(random, 5, 5, height).graph();
       std::vector<LeastChoice> of_kernels;
-      for (const CostKernel kernel :
-           {CostKernel::schur_rows, CostKernel::schur_bodies, CostKernel::monolithic})
+      for (const CostKernel kernel : kKernels)
         of_kernels.push_back(least_choice(graph, shipped.of(kernel, threads)));
       const auto chosen = make_partitioner("auto@cost-kernel=any@cost-threads=" + std::to_string(threads));
       EXPECT_EQ(chosen->run(graph).choice, std::ranges::min(of_kernels, {}, &LeastChoice::ms).text);
@@ -232,7 +299,7 @@ TEST(Auto, chooses_every_kernel_where_it_is_cheapest) {
   for (std::size_t cheapest = 0; cheapest < cost_kernel_names().size(); ++cheapest) {
     std::vector<KernelCost> costs;
     for (std::size_t k = 0; k < cost_kernel_names().size(); ++k) {
-      costs.push_back({static_cast<CostKernel>(k), 1, 1, 1, {}});
+      costs.push_back({static_cast<CostKernel>(k), 1, ExpectedFactorizations::always(1), {}, {}});
       costs.back().cost[0] = k == cheapest ? 1 : 2;
     }
     const std::string path = testing::TempDir() + "any_test.toml";
@@ -255,7 +322,7 @@ TEST(Auto, alone_chooses_among_kernels) {
 
 // auto where one term of the model costs and nothing else does.
 std::unique_ptr<Partitioner> auto_by_term(int term) {
-  KernelCost cost{CostKernel::schur_rows, 1, {}, 1, {}};
+  KernelCost cost{CostKernel::schur_rows, 1, {}, {}, {}};
   cost.cost[term] = 1;
   const std::string path = testing::TempDir() + "auto_test.toml";
   std::ofstream(path, std::ios::binary) << calibration_text({}, {cost});
@@ -301,7 +368,8 @@ TEST(Auto, keeps_a_choice_that_was_made_before) {
   EXPECT_THROW(fixed->keep_choice("mix@max-bodies=99+fm/schur-rows"), std::invalid_argument);
   EXPECT_THROW(fixed->keep_choice("mix@max-bodies=100+fm/schur-bodies"), std::invalid_argument);
   const std::unique_ptr<Partitioner> any = make_partitioner("auto@cost-kernel=any");
-  for (const char* choice : {"mix@max-bodies=100+fm/schur-bodies", "single+none/monolithic"}) {
+  for (const char* choice : {"mix@max-bodies=100+fm/schur-bodies", "mix@max-bodies=10+fm/schur-nested",
+                             "single+none/monolithic"}) {
     any->keep_choice(choice);
     EXPECT_EQ(any->run(graph).choice, choice);
   }
@@ -311,7 +379,7 @@ TEST(Auto, keeps_a_choice_that_was_made_before) {
 }
 
 std::vector<KernelCost> some_costs() {
-  KernelCost one{CostKernel::schur_rows, 1, {-0.5, 0.25, -0.125, 0.0625, 6}, 0.25, {}};
+  KernelCost one{CostKernel::schur_rows, 1, {-0.5, 0.25, -0.125, 0.0625, 0.03125, 6}, {0.25, 1.5, 0.75}, {}};
   std::iota(one.cost.begin(), one.cost.end(), 0.5);
   KernelCost two = one;
   two.threads = 2;
@@ -329,8 +397,11 @@ TEST(Calibration, reads_what_it_writes) {
     EXPECT_EQ(read.kernels[k].factorizations.per_log_body, 0.25);
     EXPECT_EQ(read.kernels[k].factorizations.per_degree, -0.125);
     EXPECT_EQ(read.kernels[k].factorizations.per_mass_spread, 0.0625);
+    EXPECT_EQ(read.kernels[k].factorizations.per_fixed_row, 0.03125);
     EXPECT_EQ(read.kernels[k].factorizations.most, 6);
-    EXPECT_EQ(read.kernels[k].active_share, 0.25);
+    EXPECT_EQ(read.kernels[k].active_share.constant, 0.25);
+    EXPECT_EQ(read.kernels[k].active_share.per_log_degree, 1.5);
+    EXPECT_EQ(read.kernels[k].active_share.per_constraint, 0.75);
     EXPECT_EQ(read.kernels[k].cost, some_costs()[k].cost);
   }
   EXPECT_EQ(read.fingerprint, parse_calibration("text", text).fingerprint);
@@ -361,20 +432,20 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 TEST(Calibration, names_the_line_that_is_wrong) {
   const std::string good = calibration_text({}, some_costs());
   EXPECT_EQ(error_of(good), "");
-  EXPECT_EQ(error_of(""), "text is no calibration: schema = \"cleave-calibration-3\" is missing");
+  EXPECT_EQ(error_of(""), "text is no calibration: schema = \"cleave-calibration-4\" is missing");
   EXPECT_EQ(error_of(replaced(good, "schur-rows", "schur-row")),
             "text: line 3: 'schur-row' is unknown (did you mean 'schur-rows'?); choices: schur-rows, "
-            "schur-bodies, monolithic");
-  EXPECT_EQ(error_of(replaced(good, "active_share = 0.25", "active_share = 2")),
-            "text: line 9: active_share: 2 is not in [0, 1]");
-  EXPECT_EQ(error_of(replaced(good, "active_share = 0.25\n", "")),
-            "text lacks active_share of [schur-rows.threads-1]");
+            "schur-bodies, schur-nested, monolithic");
+  EXPECT_EQ(error_of(replaced(good, "factorizations_most = 6", "factorizations_most = 0")),
+            "text: line 9: factorizations_most: 0 is not in [1, inf)");
+  EXPECT_EQ(error_of(replaced(good, "active_share_constant = 0.25\n", "")),
+            "text lacks active_share_constant of [schur-rows.threads-1]");
   EXPECT_EQ(error_of(replaced(good, "threads-2", "threads-1")),
-            "text: line 23: [schur-rows.threads-1] stands twice");
+            "text: line 26: [schur-rows.threads-1] stands twice");
   EXPECT_EQ(error_of(replaced(good, "us_per_solve = 0.5", "us_per_solve = -1")),
-            "text: line 10: us_per_solve: -1 is not in [0, inf)");
+            "text: line 13: us_per_solve: -1 is not in [0, inf)");
   EXPECT_EQ(error_of(replaced(good, "us_per_solve", "us_per_solves")).substr(0, 44),
-            "text: line 10: 'us_per_solves' is unknown (d");
+            "text: line 13: 'us_per_solves' is unknown (d");
 }
 
 TEST(Calibration, is_known_once_it_was_read) {

@@ -35,7 +35,7 @@ std::vector<PartitionerEntry> rows_that_split_by_recursion() {
   return rows;
 }
 
-NestedPartition nest(const BodyGraph& graph, const SetSplitter& splitter) {
+Partition nest(const BodyGraph& graph, const SetSplitter& splitter) {
   const auto split_set = [&](const BodyGraph& set, int most_bodies) {
     Partition parts = splitter.grow(set, most_bodies);
     splitter.refine(set, most_bodies, parts);
@@ -94,10 +94,10 @@ TEST_P(NestedContract, gives_a_tree_whose_leaves_are_small) {
   int deep = 0;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
     const Draw draw(seed);
-    const NestedPartition nested = nest(draw.bodies.graph(), draw.splitter(partitioner(), refiner()));
+    const Partition nested = nest(draw.bodies.graph(), draw.splitter(partitioner(), refiner()));
     ASSERT_EQ(tree_fault(draw.bodies, nested), "") << draw.text;
-    for (const int size : part_sizes(nested.leaves)) ASSERT_LE(size, most_leaf_bodies(draw)) << draw.text;
-    const int inner = static_cast<int>(nested.parent_of_part.size()) - nested.leaves.part_count;
+    for (const int size : part_sizes(nested)) ASSERT_LE(size, most_leaf_bodies(draw)) << draw.text;
+    const int inner = static_cast<int>(nested.parent_of_part.size()) - nested.part_count;
     const bool must_split = is_bounded() && draw.bodies.count() > most_leaf_bodies(draw);
     ASSERT_TRUE(inner > 0 || !must_split) << draw.text;
     ASSERT_TRUE(inner == 0 || draw.bodies.count() > draw.grown.max_bodies) << draw.text;
@@ -112,10 +112,10 @@ TEST_P(NestedContract, gives_the_same_tree_again) {
     const Draw draw(seed);
     const BodyGraph graph = draw.bodies.graph();
     const SetSplitter splitter = draw.splitter(partitioner(), refiner());
-    const NestedPartition first = nest(graph, splitter);
-    for (const NestedPartition& other :
+    const Partition first = nest(graph, splitter);
+    for (const Partition& other :
          {nest(graph, splitter), nest(graph, draw.splitter(partitioner(), refiner()))}) {
-      ASSERT_EQ(first_difference(first.leaves, other.leaves), "") << draw.text;
+      ASSERT_EQ(first_difference(first, other), "") << draw.text;
       ASSERT_EQ(first.parent_of_part, other.parent_of_part) << draw.text;
     }
   }
@@ -150,18 +150,21 @@ TEST_P(NestedContract, accepts_the_smallest_graphs_and_the_largest_arity) {
 // The check of trees must be able to fail: each tree is wrong in one way.
 TEST(TreeFault, tells_what_is_wrong_with_a_tree) {
   const Bodies four{"four", {1, 1, 1, 1}, {{0, 1, 3}}};
-  const Partition leaves{{0, 1, 1, 2}, 3};
-  EXPECT_EQ(tree_fault(four, {leaves, {3, 3, 4, 4, -1}}), "");
-  EXPECT_EQ(tree_fault(four, {leaves, {3, 3, 3, -1}}), "");
-  EXPECT_NE(tree_fault(four, {leaves, {}}), "");
-  EXPECT_NE(tree_fault(four, {leaves, {3, 3, -1, -1}}), "");               // two roots
-  EXPECT_NE(tree_fault(four, {leaves, {3, 3, 4, 5, 5, -1}}), "");          // an only child
-  EXPECT_NE(tree_fault(four, {leaves, {4, 4, 3, -1, 3}}), "");             // a parent before its child
-  EXPECT_NE(tree_fault(four, {leaves, {2, 2, 4, 4, -1}}), "");             // a part that is no leaf
-  EXPECT_NE(tree_fault(four, {leaves, {4, 4, 4, 4, -1}}), "");             // an inner node without children
-  EXPECT_NE(tree_fault(four, {{{0, 1, 1, 3}, 4}, {4, 4, 4, 4, -1}}), "");  // an empty part
-  EXPECT_NE(tree_fault(four, {leaves, {4, 4, 4, -1, -1}}), "");            // two trees
-  EXPECT_NE(tree_fault(Bodies{}, {{}, {-1}}), "");                         // a node of nothing
+  const auto fault = [&](std::vector<int> parent_of_part, std::vector<int> part_of_body = {0, 1, 1, 2},
+                         int parts = 3) {
+    return tree_fault(four, {std::move(part_of_body), parts, {}, std::move(parent_of_part)});
+  };
+  EXPECT_EQ(fault({3, 3, 4, 4, -1}), "");
+  EXPECT_EQ(fault({3, 3, 3, -1}), "");
+  EXPECT_NE(fault({}), "");
+  EXPECT_NE(fault({3, 3, -1, -1}), "");                     // two roots
+  EXPECT_NE(fault({3, 3, 4, 5, 5, -1}), "");                // an only child
+  EXPECT_NE(fault({4, 4, 3, -1, 3}), "");                   // a parent before its child
+  EXPECT_NE(fault({2, 2, 4, 4, -1}), "");                   // a part that is no leaf
+  EXPECT_NE(fault({4, 4, 4, 4, -1}), "");                   // an inner node without children
+  EXPECT_NE(fault({4, 4, 4, 4, -1}, {0, 1, 1, 3}, 4), "");  // an empty part
+  EXPECT_NE(fault({4, 4, 4, -1, -1}), "");                  // two trees
+  EXPECT_NE(tree_fault(Bodies{}, {{}, 0, {}, {-1}}), "");   // a node of nothing
 }
 
 // Every pair of twins, on the same draws.
@@ -179,10 +182,9 @@ TEST(NestedTwin, agrees_with_the_recursion) {
         const RefineOptions refined = options_of(refiner_row, draw.refined);
         const SlowNested twin =
             slow_nested(draw.bodies, partitioner, draw.grown, refiner, refined, draw.arity);
-        const NestedPartition fast =
-            nest(graph, draw.splitter(row(partitioners(), partitioner.name), refiner_row));
+        const Partition fast = nest(graph, draw.splitter(row(partitioners(), partitioner.name), refiner_row));
         SCOPED_TRACE(draw.text + ", " + partitioner.name + "+" + refiner.name);
-        ASSERT_EQ(first_difference(twin.nested.leaves, fast.leaves), "");
+        ASSERT_EQ(first_difference(twin.nested, fast), "");
         ASSERT_EQ(twin.nested.parent_of_part, fast.parent_of_part);
         nodes += static_cast<int>(fast.parent_of_part.size());
         joined += twin.joined;
@@ -197,15 +199,15 @@ TEST(NestedTwin, agrees_with_the_recursion) {
 TEST(Nested, takes_sets_that_lose_one_body_at_a_time) {
   constexpr int kBodies = 3000;
   const Bodies bodies{"loose", std::vector<double>(kBodies, 1.0), {}};
-  const NestedPartition nested = split_by_recursion(bodies.graph(), 1, 2, [](const BodyGraph& set, int) {
+  const Partition nested = split_by_recursion(bodies.graph(), 1, 2, [](const BodyGraph& set, int) {
     Partition parts{std::vector<int>(set.body_count(), 0), 2};
     parts.part_of_body.back() = 1;
     return parts;
   });
-  ASSERT_EQ(nested.leaves.part_count, kBodies);
+  ASSERT_EQ(nested.part_count, kBodies);
   ASSERT_EQ(nested.parent_of_part.size(), 2u * kBodies - 1);
   // The first child of the first child ... is body 0; each inner node has the next one up as its parent.
-  EXPECT_EQ(nested.leaves.part_of_body.front(), 0);
+  EXPECT_EQ(nested.part_of_body.front(), 0);
   for (int inner = kBodies; inner < 2 * kBodies - 2; ++inner)
     ASSERT_EQ(nested.parent_of_part[inner], inner + 1);
 }
@@ -220,8 +222,8 @@ TEST(Nested, numbers_nodes_as_they_are_made) {
     for (int body = 0; body < set.body_count(); ++body) parts.part_of_body.push_back(body / most_bodies);
     return parts;
   };
-  const NestedPartition nested = split_by_recursion(path.graph(), 2, 2, halves);
-  EXPECT_EQ(nested.leaves.part_of_body, (std::vector<int>{0, 0, 1, 1, 2, 2, 3, 3}));
+  const Partition nested = split_by_recursion(path.graph(), 2, 2, halves);
+  EXPECT_EQ(nested.part_of_body, (std::vector<int>{0, 0, 1, 1, 2, 2, 3, 3}));
   EXPECT_EQ(nested.parent_of_part, (std::vector<int>{5, 5, 4, 4, 6, 6, -1}));
 }
 
@@ -235,8 +237,8 @@ TEST(Nested, takes_sets_that_are_left_whole_as_leaves) {
     parts.part_count += parts.part_of_body.back();
     return parts;
   };
-  const NestedPartition nested = split_by_recursion(four.graph(), 1, 2, by_place);
-  EXPECT_EQ(nested.leaves.part_of_body, (std::vector<int>{0, 0, 1, 1}));
+  const Partition nested = split_by_recursion(four.graph(), 1, 2, by_place);
+  EXPECT_EQ(nested.part_of_body, (std::vector<int>{0, 0, 1, 1}));
   EXPECT_EQ(nested.parent_of_part, (std::vector<int>{2, 2, -1}));
   const auto whole = [](const BodyGraph& set, int) {
     return Partition{std::vector<int>(set.body_count(), 0), 1};

@@ -1,12 +1,13 @@
 #include "tests/partition/slow_cost.h"
 
-#include "partition/calibration.h"
-
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <tuple>
 #include <utility>
+
+#include "partition/calibration.h"
 
 namespace cleave::partition_test {
 namespace {
@@ -40,6 +41,7 @@ void count_rows(const BodyGraph& graph, std::span<const int> part_of_body, CostF
     ++part.bodies;
     part.rows += graph.fixed_rows(i);
     features.rows += graph.fixed_rows(i);
+    features.fixed_rows += graph.fixed_rows(i);
     ++features.bodies;
     for (int k = graph.first(i); k < graph.last(i); ++k) {
       const int j = graph.neighbour(k), rows = graph.weight(k, EdgeWeight::rows);
@@ -87,7 +89,8 @@ int SlowFactor::below(int column) const {
   return blocks;
 }
 
-SlowFactor slow_factor(const BodyGraph& graph, std::span<const int> bodies, std::span<const char> is_last) {
+SlowFactor slow_factor(const BodyGraph& graph, std::span<const int> bodies,
+                       std::span<const int> stage_of_body) {
   const int n = static_cast<int>(bodies.size());
   std::vector<std::vector<char>> joined(n, std::vector<char>(n, 0));
   for (int a = 0; a < n; ++a)
@@ -98,10 +101,10 @@ SlowFactor slow_factor(const BodyGraph& graph, std::span<const int> bodies, std:
   SlowFactor factor;
   for (int step = 0; step < n; ++step) {
     int best = -1;
-    std::pair<int, int> least;  // (last, degree)
+    std::pair<int, int> least;  // (stage, degree)
     for (int a = 0; a < n; ++a) {
       if (done[a]) continue;
-      std::pair<int, int> rank{!is_last.empty() && is_last[bodies[a]], 0};
+      std::pair<int, int> rank{stage_of_body.empty() ? 0 : stage_of_body[bodies[a]], 0};
       for (int b = 0; b < n; ++b) rank.second += !done[b] && joined[a][b];
       if (best < 0 || rank < least) best = a, least = rank;
     }
@@ -120,11 +123,58 @@ SlowFactor slow_factor(const BodyGraph& graph, std::span<const int> bodies, std:
   return factor;
 }
 
-CostFeatures slow_cost_features(const BodyGraph& graph, std::span<const int> part_of_body, int part_count,
-                                CostKernel kernel, double active_share) {
+namespace {
+
+// From the parent upwards; of one level the root is the part count.
+std::vector<int> nodes_above(const Partition& partition, int node) {
+  if (partition.parent_of_part.empty()) return {partition.part_count};
+  std::vector<int> above;
+  while ((node = partition.parent_of_part[node]) >= 0) above.push_back(node);
+  return above;
+}
+
+// -1 where the edge is not cut.
+int cutting_node(const Partition& partition, int part_a, int part_b) {
+  if (part_a == part_b) return -1;
+  const std::vector<int> above_b = nodes_above(partition, part_b);
+  for (const int node : nodes_above(partition, part_a))
+    if (std::ranges::count(above_b, node) > 0) return node;
+  return -1;
+}
+
+}  // namespace
+
+std::vector<int> slow_separator_nodes(const BodyGraph& graph, const Partition& partition) {
   const int n = graph.body_count();
-  std::vector<int> parts(part_of_body.begin(), part_of_body.end());
-  if (kernel == CostKernel::monolithic) parts.assign(n, 0), part_count = n > 0;
+  std::vector<int> node_of_body = partition.part_of_body;
+  const int root = partition.parent_of_part.empty() ? partition.part_count
+                                                    : static_cast<int>(partition.parent_of_part.size()) - 1;
+  for (int node = root; node >= partition.part_count; --node) {
+    while (true) {
+      int best = -1, most = 0;
+      for (int body = 0; body < n; ++body) {
+        int open = 0;
+        for (const int other : graph.neighbours(body))
+          open +=
+              node_of_body[body] < partition.part_count && node_of_body[other] < partition.part_count &&
+              cutting_node(partition, partition.part_of_body[body], partition.part_of_body[other]) == node;
+        if (open > most) best = body, most = open;
+      }
+      if (best < 0) break;
+      node_of_body[best] = node;
+    }
+  }
+  return node_of_body;
+}
+
+CostFeatures slow_cost_features(const BodyGraph& graph, const Partition& partition, CostKernel kernel,
+                                double active_share) {
+  const int n = graph.body_count();
+  Partition split = partition;
+  if (kernel == CostKernel::monolithic) split = {std::vector<int>(n, 0), n > 0};
+  if (kernel != CostKernel::schur_nested) split.parent_of_part.clear();
+  const std::vector<int>& parts = split.part_of_body;
+  const int part_count = split.part_count;
   CostFeatures features;
   features.kernel = kernel;
   double mean = 0, mean_square = 0;
@@ -142,15 +192,15 @@ CostFeatures slow_cost_features(const BodyGraph& graph, std::span<const int> par
     features.interface_entries = c * (c + 1) / 2;
     return features;
   }
-  const std::vector<char> cover = cut_cover(graph, parts);
+  const std::vector<int> node = slow_separator_nodes(graph, split);
   std::vector<int> bodies(n);
   std::iota(bodies.begin(), bodies.end(), 0);
-  const SlowFactor factor = slow_factor(graph, bodies, cover);
+  const SlowFactor factor = slow_factor(graph, bodies, node);
   PartCost interface;
   for (int column = 0; column < n; ++column) {
     const int body = factor.order[column];
-    features.cover_bodies += cover[body];
-    add_columns(factor, column, cover[body] ? interface : features.parts[parts[body]]);
+    features.cover_bodies += node[body] >= part_count;
+    add_columns(factor, column, node[body] >= part_count ? interface : features.parts[parts[body]]);
   }
   features.interface_unknowns = 6.0 * features.cover_bodies;
   features.interface_flops = interface.factor_flops;
@@ -165,9 +215,7 @@ namespace {
 double time_ms(const BodyGraph& graph, const Partition& partition) {
   static const KernelCost cost =
       known_calibration(read_calibration("calibration", "shipped")).of(CostKernel::schur_rows, 1);
-  return modelled_ms(
-      CostCounter(graph, cost.kernel, cost.active_share).count(partition.part_of_body, partition.part_count),
-      cost);
+  return modelled_ms(CostCounter(graph, cost.kernel, cost.active_share.of(graph)).count(partition), cost);
 }
 
 struct Move {

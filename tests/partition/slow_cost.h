@@ -17,10 +17,14 @@ struct SlowFactor {
   std::vector<std::vector<char>> lower;  // [row][column], by place in `order`, the diagonal set
   int below(int column) const;
 };
-SlowFactor slow_factor(const BodyGraph& graph, std::span<const int> bodies, std::span<const char> is_last);
+SlowFactor slow_factor(const BodyGraph& graph, std::span<const int> bodies,
+                       std::span<const int> stage_of_body);
 
-CostFeatures slow_cost_features(const BodyGraph& graph, std::span<const int> part_of_body, int part_count,
-                                CostKernel kernel, double active_share);
+// separator_nodes of cut_cover.h: node by node from the root, the body with the most open edges looked for among all.
+std::vector<int> slow_separator_nodes(const BodyGraph& graph, const Partition& partition);
+
+CostFeatures slow_cost_features(const BodyGraph& graph, const Partition& partition, CostKernel kernel,
+                                double active_share);
 
 // fm-cost at its defaults: every candidate is a partition of its own, counted from scratch.
 RefineSummary slow_fm_cost(const BodyGraph& graph, const RefineOptions& options, Partition& partition);

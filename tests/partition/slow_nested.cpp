@@ -89,11 +89,11 @@ int count_leaves(const Set& set) {
 }
 
 // next_leaf: ids of leaves from the first; next_inner: of inner nodes from the last.
-int number(const Set& set, int parent, int& next_leaf, int& next_inner, NestedPartition& nested) {
+int number(const Set& set, int parent, int& next_leaf, int& next_inner, Partition& nested) {
   const int node = set.children.empty() ? next_leaf++ : next_inner--;
   nested.parent_of_part[node] = parent;
   if (set.children.empty())
-    for (const int body : set.bodies) nested.leaves.part_of_body[body] = node;
+    for (const int body : set.bodies) nested.part_of_body[body] = node;
   for (const Set& child : set.children) number(child, node, next_leaf, next_inner, nested);
   return node;
 }
@@ -110,7 +110,7 @@ SlowNested slow_nested(const Bodies& bodies, const PartitionerTwin& partitioner,
   SlowRecursion recursion(partitioner, grown, refiner, refined, arity);
   const Set root = recursion.split(bodies, all, false);
   slow.joined = recursion.joined();
-  slow.nested.leaves = {std::vector<int>(bodies.count(), -1), count_leaves(root)};
+  slow.nested = {std::vector<int>(bodies.count(), -1), count_leaves(root)};
   slow.nested.parent_of_part.resize(count_leaves(root) + count_inner(root));
   int next_leaf = 0, next_inner = static_cast<int>(slow.nested.parent_of_part.size()) - 1;
   number(root, -1, next_leaf, next_inner, slow.nested);

@@ -9,7 +9,7 @@
 namespace cleave::partition_test {
 
 struct SlowNested {
-  NestedPartition nested;
+  Partition nested;
   int joined = 0;  // parts that were left over and joined, in all sets
 };
 

@@ -29,13 +29,13 @@ int count_below(const std::vector<int>& parent_of_part, int leaves, int node) {
 
 }  // namespace
 
-std::string tree_fault(const Bodies& bodies, const NestedPartition& nested) {
-  if (const std::string fault = ids_fault(bodies, nested.leaves); !fault.empty()) return fault;
+std::string tree_fault(const Bodies& bodies, const Partition& nested) {
+  if (const std::string fault = ids_fault(bodies, nested); !fault.empty()) return fault;
   const int nodes = static_cast<int>(nested.parent_of_part.size());
   if (bodies.count() == 0) return nodes == 0 ? "" : "nodes without a body";
   const std::vector<int> roots = children_of(nested.parent_of_part, -1);
   if (roots.size() != 1) return std::to_string(roots.size()) + " roots";
-  const int below = count_below(nested.parent_of_part, nested.leaves.part_count, roots.front());
+  const int below = count_below(nested.parent_of_part, nested.part_count, roots.front());
   if (below < 0) return "a node without the children it must have, or after its parent";
   return below == nodes ? "" : "nodes that hang from no root";
 }

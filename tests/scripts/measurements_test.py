@@ -275,25 +275,25 @@ class PartitionRegretTest(Measurement):
 
     def test_every_round_replays_every_cell_with_the_kernel_that_is_modelled(self):
         said = self.run_it("--rounds", 2, "--threads", 2).stdout
-        self.assertEqual(said.count("pass"), 4 * 3, said)
+        self.assertEqual(said.count("pass"), 4 * 4, said)
         calls = self.calls()
         replays = [call.split() for call in calls if call.startswith("replay ")]
-        self.assertEqual((len(calls), len(replays)), (4 * (1 + 2 * 3), 4 * 2 * 3))
-        solvers = {kernel: f"pivot:{kernel},pivot:monolithic" for kernel in ("schur-rows", "schur-bodies")} | {"any": "pivot:chosen,pivot:monolithic"}
+        self.assertEqual((len(calls), len(replays)), (4 * (1 + 2 * 4), 4 * 2 * 4))
+        solvers = {kernel: f"pivot:{kernel},pivot:monolithic" for kernel in ("schur-rows", "schur-bodies", "schur-nested")} | {"any": "pivot:chosen,pivot:monolithic"}
         for words in replays:
             given = dict(zip(words, words[1:]))
             self.assertEqual(given["--solver"], solvers[given["--cost-kernel"]])
             self.assertEqual((given["--threads"], given["--cost-threads"]), ("2", "2"))
         rows = self.rows("partition_regret.csv")
         # scenes, steps and rounds; kernels, refiners, partitioners and solvers, of which the stand-in splits for both; chosen and monolithic
-        self.assertEqual(len(rows), 4 * 12 * 2 * (2 * 2 * (2 + 3 * 5 + 1) * 2 + 2))
-        self.assertEqual({row["replay"] for row in rows}, {"schur-rows", "schur-bodies", "any"})
+        self.assertEqual(len(rows), 4 * 12 * 2 * (3 * 2 * (5 + 3 * 5 + 1) * 2 + 2))
+        self.assertEqual({row["replay"] for row in rows}, {"schur-rows", "schur-bodies", "schur-nested", "any"})
         self.assertEqual({row["round"] for row in rows}, {"1", "2"})
 
     def test_more_than_a_tenth_is_an_exit_code_and_said(self):
         for auto_ms, code in ((0.9, 3), (0.1, 0)):  # of 8.1
             with unittest.mock.patch.dict(os.environ, STAND_IN_AUTO_MS=str(auto_ms)):
-                self.assertEqual(self.run_it("--rounds", 2, code=code).stdout.count("FAIL"), 12 if code else 0)
+                self.assertEqual(self.run_it("--rounds", 2, code=code).stdout.count("FAIL"), 16 if code else 0)
 
     def test_bad_input_is_one_line(self):
         self.check_least("--rounds", 2)
