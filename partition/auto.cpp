@@ -3,8 +3,9 @@
 //
 // Candidates are one part with all bodies, and every partitioner, max-bodies and refiner of the table below whose parts
 // are smaller than the whole, each with every kernel that is asked for; `monolithic` splits nothing and is one of one part, and
-// `schur-nested` has its parts by recursion (nested.h), in a tree of pairs. The first of equal ones is taken, so that one
-// subsystem wins where splitting buys nothing.
+// `schur-nested` has its parts by recursion (nested.h), in a tree of pairs. What splits must be modelled to save a twentieth
+// of what one part takes: the model is off by more, and splitting takes time of its own, which it does not count. The first
+// of equal ones is taken.
 // Looking takes longer than many a solve, so a choice serves while the graph is of its size: it is made on the first graph
 // with an edge, and again on one whose edges are a quarter more or a fifth fewer. What was chosen is Partition::choice.
 #include <algorithm>
@@ -27,7 +28,8 @@ constexpr std::array kPartitioners = {"mindp", "mix", "multilevel"};
 constexpr std::array kMaxBodies = {10, 25, 50, 100, 200};
 constexpr std::array kRefiners = {"none", "fm"};
 constexpr int kArity = 2;
-constexpr double kOtherSize = 1.25;  // a ratio of edges from which on a choice is made again
+constexpr double kWorthSplitting = 1.05;  // what one part takes over what a split may at most
+constexpr double kOtherSize = 1.25;       // a ratio of edges from which on a choice is made again
 
 class Candidate {
  public:
@@ -122,7 +124,7 @@ class Auto final : public Partitioner {
         const CostKernel kernel = costs_[c].kernel;
         std::optional<Partition>& parts = kernel == CostKernel::schur_nested ? tree : one_level;
         if (!parts) parts = candidates_[k].split_for(kernel, graph);
-        const double ms = modelled_ms(counters[c].count(*parts), costs_[c]);
+        const double ms = modelled_ms(counters[c].count(*parts), costs_[c]) * (k > 0 ? kWorthSplitting : 1.0);
         if (ms < least_ms) least_ms = ms, chosen_ = {k, c};
       }
     }

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "harness/base/names.h"
+#include "harness/base/printable_text.h"
 #include "harness/base/progress.h"
 #include "harness/base/stopwatch.h"
 #include "harness/commands/check_arguments.h"
@@ -73,13 +74,14 @@ std::string asks_for_series(const RunOptions& options) {
 void check_files(ReplayOptions& options) {
   std::string without_groups;
   std::string before;
+  std::vector<std::string> unturned;
   std::set<fs::path> seen;
   std::tuple<std::string, std::uint64_t, int, int> last;
   for (const std::string& path : options.files) {
     if (!seen.insert(fs::weakly_canonical(path)).second)
       throw std::invalid_argument("FILES: " + path + " is named twice");
     ProblemFile file = read_problem_file_aloud(path);
-    turn_friction(path, options.friction, file);
+    if (!turn_friction(path, options.friction, file)) unturned.push_back(path);
     const std::tuple now{file.scene, file.seed, file.problem.body_count(), file.step};
     if (const std::string option = asks_for_series(options.solve);
         !option.empty() && !before.empty() && now != last)
@@ -90,6 +92,10 @@ void check_files(ReplayOptions& options) {
     last = now;
     ++std::get<3>(last);
   }
+  if (!unturned.empty())
+    say("--friction " + options.friction + ": " + std::to_string(unturned.size()) + " of " +
+        std::to_string(options.files.size()) + " files have no contact with friction and stay as recorded, " +
+        unturned.front() + " the first");
   if (without_groups.empty()) return;
   const auto why = [&](const Algorithm& partitioner) {
     return needs_groups(partitioner)

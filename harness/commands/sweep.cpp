@@ -58,6 +58,9 @@ SweepOptions read_options(const Given& given, const std::string& program) {
     options.cell_seconds = parse_number("--cell-seconds", given.cell_seconds, kPositive);
   if (!given.cell_memory_gb.empty())
     options.cell_memory_gb = parse_number("--cell-memory-gb", given.cell_memory_gb, kPositive);
+  if (given.force && given.keep_failed)
+    throw std::invalid_argument(
+        "--keep-failed: keeps cells, and --force runs all anew; leave out one of them");
   options.force = given.force;
   options.keep_failed = given.keep_failed || given.merge;
   options.quiet = given.quiet;
@@ -157,7 +160,7 @@ int conclude(const SweepOptions& options, const Campaign& campaign, const SweepS
     print_rows(options, campaign);
     return not_ok > 0 || pending_of(campaign) > 0 ? kExitCellsFailed : kExitOk;
   }
-  if (!summary.interrupted) return not_ok > 0 ? kExitCellsFailed : kExitOk;
+  if (!summary.interrupted) return not_ok > 0 || pending_of(campaign) > 0 ? kExitCellsFailed : kExitOk;
   say("interrupted; the same command goes on");
   return kExitInterrupted;
 }

@@ -83,9 +83,9 @@ std::string RunSummary::text() const {
                     measured_steps);
   if (t_s_waiting_total_ms > kMostWaiting * t_s_total_ms)
     lines += format(
-        "the solves waited %.3g %% of their time for a core (%.3g of %.3g ms, all threads together), used by "
-        "others or by more threads than there are cores\n",
-        100 * t_s_waiting_total_ms / t_s_total_ms, t_s_waiting_total_ms, t_s_total_ms);
+        "the threads of the solves waited %.3g ms for a core in solves of %.3g ms, used by others or by more "
+        "threads than there are cores (a wait counts whole where it ends)\n",
+        t_s_waiting_total_ms, t_s_total_ms);
   if (t_s_far_ms > kMostFar * t_s_apart_total_ms)
     lines += format(
         "for %.3g %% of the time of the solves their threads were on cores far apart (core_round_trip_ns >= "

@@ -173,10 +173,14 @@ TEST_F(ChosenKernel, RunsTheKernelOfTheChoice) {
 // The tree that was chosen is what schur-nested works on, is stored, and is made again from the choice.
 TEST_F(ChosenKernel, ATreeIsChosenAndKept) {
   const TemporaryDirectory directory;
-  const std::string file = calibration_of_cheapest(CostKernel::schur_nested, directory / "nested.toml", 1e-3);
-  const fs::path out = directory / "out";
+  const std::string file = calibration_of_cheapest(CostKernel::schur_nested, directory / "nested.toml", 1);
+  const fs::path out = directory / "out", tower = directory / "made/log_tower_step000020.h5";
+  ASSERT_EQ(run_cleave({"record", "--scene", "log_tower", "--layers", "10", "--at", "20", "--out",
+                        directory / "made"})
+                .exit_code,
+            0);
   const Arguments replay = {"replay",
-                            ChosenKernel::file(100),
+                            tower,
                             "--partitioner",
                             "auto",
                             "--refiner",
@@ -199,7 +203,7 @@ TEST_F(ChosenKernel, ATreeIsChosenAndKept) {
   EXPECT_NE(choice.find("/schur-nested"), std::string::npos) << choice;
   EXPECT_EQ(rows.at(0, "solution_hash"), rows.at(1, "solution_hash"));
   EXPECT_EQ(rows.at(0, "parts"), rows.at(2, "parts"));
-  ProblemFile written = read_problem_file(out / fs::path(ChosenKernel::file(100)).filename());
+  ProblemFile written = read_problem_file(out / tower.filename());
   for (const auto& [label, partition] : written.partitions)
     EXPECT_GT(partition.parent_of_part.size(), partition.part_of_body.size() / 10) << label;
 }

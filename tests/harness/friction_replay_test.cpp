@@ -128,6 +128,25 @@ TEST_F(FrictionReplay, VerifyFindsAnotherModel) {
   EXPECT_NE(result.out.find("friction_model cone; contact_set["), std::string::npos) << result.out;
 }
 
+TEST_F(FrictionReplay, SaysThatNoContactHasFriction) {
+  run_cleave({"record", "--scene", "rock_pile", "--bodies", "20", "--friction", "none", "--at", "80", "--out",
+              *directory_ / "smooth"});
+  const std::string smooth = *directory_ / "smooth/rock_pile_step000080.h5";
+  const auto said = [&](const std::string& model) {
+    return run_cleave({"replay", smooth, recorded(), "--solver", "exact", "--friction", model, "--out",
+                       *directory_ / ("smooth_" + model)})
+        .err;
+  };
+  for (const char* model : {"cone", "box"})
+    EXPECT_NE(
+        said(model).find("--friction " + std::string(model) +
+                         ": 1 of 2 files have no contact with friction and stay as recorded, " + smooth),
+        std::string::npos);
+  const ProgramResult alone = run_cleave(
+      {"replay", recorded(), "--solver", "exact", "--friction", "box", "--out", *directory_ / "not_smooth"});
+  EXPECT_EQ(alone.err.find("stay as recorded"), std::string::npos) << alone.err;
+}
+
 TEST_F(FrictionReplay, RepeatsFromItsManifest) {
   replay(recorded(), "once", {"--friction", "cone"});
   EXPECT_NE(

@@ -276,7 +276,7 @@ TEST(RunSummary, SaysWhenSolvesWaitedForACore) {
   row.t_s_waiting_ms = 25;
   summary.add(row);
   EXPECT_NE(summary.text().find(
-                "the solves waited 20 % of their time for a core (30 of 150 ms, all threads together)"),
+                "the threads of the solves waited 30 ms for a core in solves of 150 ms"),
             std::string::npos)
       << summary.text();
 }

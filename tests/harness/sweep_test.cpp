@@ -437,6 +437,15 @@ TEST(Sweep, ASecondSignalEndsItAndItsCellsAtOnce) {
   EXPECT_TRUE(is_gone(cell));
 }
 
+TEST(Sweep, DoesNotKeepWhatItIsToRunAnew) {
+  const Campaign campaign(kEndless);
+  const ProgramResult refused = campaign.sweep({"--force", "--keep-failed"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_NE(refused.err.find("--keep-failed: keeps cells, and --force runs all anew; leave out one of them"),
+            std::string::npos)
+      << refused.err;
+}
+
 TEST(Sweep, OneProcessAtATimeHoldsADirectory) {
   const Campaign campaign(kEndless);
   const pid_t sweep = start_cleave(campaign.words({}));
@@ -448,7 +457,7 @@ TEST(Sweep, OneProcessAtATimeHoldsADirectory) {
       << second.err;
   // A share of the same campaign has a lock of its own, and leaves the cell to who runs it.
   const ProgramResult share = campaign.sweep({"--shard", "1/2"});
-  EXPECT_EQ(share.exit_code, 0);
+  EXPECT_EQ(share.exit_code, 2);  // not done, by whomever
   EXPECT_NE(share.err.find("1 cells: 1 pending; 0 kept, 1 run by another process"), std::string::npos)
       << share.err;
   ::kill(sweep, SIGTERM);

@@ -247,7 +247,8 @@ LeastChoice least_choice(const BodyGraph& graph, const KernelCost& cost) {
     if (cost.kernel == CostKernel::schur_nested && partitioner != "single")
       parts = SetSplitter(read_partitioner(partitioner), read_refiner(refiner), 2).run(graph);
     const double ms =
-        modelled_ms(CostCounter(graph, cost.kernel, cost.active_share.of(graph)).count(parts), cost);
+        modelled_ms(CostCounter(graph, cost.kernel, cost.active_share.of(graph)).count(parts), cost) *
+        (partitioner == "single" ? 1 : 1.05);  // splitting is to be worth it
     if (best.empty() || ms < least_ms) best = partitioner + "+" + refiner, least_ms = ms;
   };
   look("single", graph.body_count(), "none");
