@@ -261,7 +261,8 @@ class Sweep {
     const std::vector<CampaignCell>& cells = campaign_.cells();
     std::string text = std::to_string(done_) + " of " + std::to_string(cells.size()) + " cells, " +
                        std::to_string(failed_) + " failed";
-    if (const auto left_s = seconds_left()) text += ", about " + seconds_text(*left_s) + " to go";
+    if (const auto left_s = seconds_left())
+      text += *left_s > 0 ? ", about " + seconds_text(*left_s) + " to go" : ", longer than cells like these took";
     for (const RunningCell& cell : running_)
       text += "; " + campaign_.rows()[cell.place].title() + " for " + seconds_text(cell.process.seconds());
     progress_.show(text);
