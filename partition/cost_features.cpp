@@ -51,7 +51,9 @@ CostCounter::CostCounter(const BodyGraph& graph, CostKernel kernel, double activ
       kernel_(kernel),
       active_share_(active_share),
       mass_spread_(mass_spread_of(graph)),
-      eliminator_(graph) {}
+      eliminator_(graph) {
+  for (int i = 0; i < graph.body_count(); ++i) fixed_rows_ += graph.fixed_rows(i);
+}
 
 CostFeatures CostCounter::count(const Partition& partition) {
   CostFeatures features;
@@ -59,7 +61,7 @@ CostFeatures CostCounter::count(const Partition& partition) {
   features.bodies = graph_.body_count();
   features.edges = graph_.edge_count();
   features.mass_spread = mass_spread_;
-  for (int i = 0; i < graph_.body_count(); ++i) features.fixed_rows += graph_.fixed_rows(i);
+  features.fixed_rows = fixed_rows_;
   if (kernel_ == CostKernel::schur_rows) {
     count_parts(partition, features);
   } else if (kernel_ == CostKernel::monolithic) {
@@ -112,9 +114,9 @@ void CostCounter::count_parts(const Partition& partition, CostFeatures& features
 
 void CostCounter::count_whole(const Partition& partition, CostFeatures& features) {
   const std::vector<int>& part_of_body = partition.part_of_body;
-  const std::vector<int> node =
-      separator_nodes(graph_, part_of_body, partition.part_count,
-                      kernel_ == CostKernel::schur_nested ? partition.parent_of_part : std::vector<int>());
+  std::span<const int> tree;  // empty: one level
+  if (kernel_ == CostKernel::schur_nested) tree = partition.parent_of_part;
+  const std::vector<int> node = separator_nodes(graph_, part_of_body, partition.part_count, tree);
   const auto is_interface = [&](int body) { return node[body] >= partition.part_count; };
   features.parts.resize(partition.part_count);
   std::vector<int> bodies(graph_.body_count());

@@ -72,6 +72,7 @@ class CostCounter {
   const BodyGraph& graph_;
   const CostKernel kernel_;
   const double active_share_, mass_spread_;
+  int fixed_rows_ = 0;
   Eliminator eliminator_;
   std::vector<double> sides_;  // scratch: by column
 };

@@ -106,11 +106,6 @@ struct Samples {
   int handed_over = 0;
 };
 
-Partition parts_of(Outcome&& outcome) {
-  const int count = count_parts(outcome.part_of_body);
-  return {std::move(outcome.part_of_body), count, {}, std::move(outcome.parent_of_part)};
-}
-
 // All cells of one problem, each in its fastest round so far.
 struct MeasuredProblem {
   std::vector<StepRecord> rows;
@@ -142,7 +137,7 @@ std::vector<MeasuredProblem> measure_rounds(const std::vector<CalibrationProblem
     context.position_m = at_hand.position_m;
     MeasuredProblem round{std::vector<StepRecord>(combinations.size(), blank), {}};
     for (Outcome& outcome : measure_all(combinations, at_hand.problem, visit % count, round.rows))
-      round.parts.push_back(parts_of(std::move(outcome)));
+      round.parts.push_back(std::move(outcome.parts));
     keep_fastest(std::move(round), measured[visit % count]);
     line.update(visit + 1, kRounds * count);
   }

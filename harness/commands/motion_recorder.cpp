@@ -34,7 +34,7 @@ MotionGraph motion_graph(const BodyGraph& graph) {
 
 MotionSolution motion_solution(const StepProblem& problem, const BodyGraph& graph, const StepRecord& row,
                                const Outcome& outcome) {
-  BodyMarks marks = mark_bodies(problem, graph, outcome.part_of_body, outcome.solution.impulse);
+  BodyMarks marks = mark_bodies(problem, graph, outcome.parts.part_of_body, outcome.solution.impulse);
   return {std::move(marks.part),
           std::move(marks.interface),
           std::move(marks.residual_m_per_s),

@@ -167,11 +167,11 @@ void store(const Combination& combination, const StepRecord& row, const Outcome&
                            outcome.verdict.residual_m_per_s,
                            outcome.solution.impulse,
                            outcome.verdict.velocity};
-  if (outcome.part_of_body.empty()) return;
+  if (outcome.parts.part_of_body.empty()) return;
   SplitSetup setup = combination.split_setup();
-  setup.choice = outcome.choice;
+  setup.choice = outcome.parts.choice;
   file.partitions[label] =
-      stored_partition(setup, outcome.part_of_body, outcome.parent_of_part, outcome.origin);
+      stored_partition(setup, outcome.parts.part_of_body, outcome.parts.parent_of_part, outcome.origin);
 }
 
 class Replay {

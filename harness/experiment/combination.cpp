@@ -82,10 +82,8 @@ void set_split(const Repeats& repeats, StepRecord& row) {
 }
 
 void describe_split(const Split& split, Outcome& outcome) {
-  outcome.part_of_body = split.parts.part_of_body;
-  outcome.parent_of_part = split.parts.parent_of_part;
+  outcome.parts = split.parts;
   outcome.origin = split.origin;
-  outcome.choice = split.parts.choice;
 }
 
 void set_outcome(const Outcome& outcome, StepRecord& row) {
@@ -111,7 +109,7 @@ void set_times(const Repeats& repeats, const Outcome& outcome, StepRecord& row) 
   row.t_s_cpu_ms = outcome.cores.cpu_ms;
   row.t_s_waiting_ms = outcome.cores.waiting_ms;
   row.core_round_trip_ns = outcome.cores.round_trip_ns;
-  row.solution_hash = hex(solution_hash(outcome.solution.impulse, outcome.part_of_body));
+  row.solution_hash = hex(solution_hash(outcome.solution.impulse, outcome.parts.part_of_body));
 }
 
 // A solver that returned nothing left nothing to judge.
@@ -125,7 +123,7 @@ void set_verdict(const StepProblem& problem, const Outcome& outcome, StepRecord&
 
 void set_measures(const StepProblem& problem, const BodyGraph* graph, const Outcome& outcome,
                   StepRecord& row) {
-  const Cell cell{problem, graph, outcome.part_of_body, outcome.solution, outcome.verdict};
+  const Cell cell{problem, graph, outcome.parts.part_of_body, outcome.solution, outcome.verdict};
   for (const CellMeasure& measure : cell_measures()) row.measures.push_back(measure.value(cell));
 }
 

@@ -19,6 +19,7 @@
 #include "harness/experiment/partition_keeper.h"
 #include "harness/experiment/splitter.h"
 #include "harness/experiment/step_record.h"
+#include "partition/partition.h"
 #include "solver/residual.h"
 #include "solver/solution.h"
 #include "solver/step_solver.h"
@@ -41,10 +42,8 @@ struct Outcome {
   CoreTimes cores{};  // of the solve
   ModelCounts model;  // of --model auto
   Solution solution;
-  std::vector<int> part_of_body;    // (n) what `measure` split the bodies into; empty where parts are ignored
-  std::vector<int> parent_of_part;  // the tree of these parts; empty: one level
+  Partition parts;  // what `measure` split the bodies into; of none where parts are ignored
   PartitionOrigin origin = PartitionOrigin::fresh;
-  std::string choice;  // of a partitioner that chose others to make them; else empty
   ResidualReport verdict;
   bool finite = false;  // impulses and velocities are numbers
 

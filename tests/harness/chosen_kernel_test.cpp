@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "harness/base/names.h"
+#include "harness/commands/stored_partition.h"
 #include "harness/experiment/algorithms.h"
+#include "harness/experiment/splitter.h"
 #include "harness/files/checksums.h"
 #include "harness/files/problem_file.h"
 #include "partition/calibration.h"
@@ -129,6 +131,12 @@ std::string calibration_of_cheapest(CostKernel cheapest, const fs::path& path, d
   return path;
 }
 
+// By auto, among all kernels.
+Arguments chosen_by(const std::string& calibration, const std::string& solver) {
+  return {"--partitioner", "auto",          "--refiner", "none",     "--cost-kernel",
+          "any",           "--calibration", calibration, "--solver", solver};
+}
+
 TEST_F(ChosenKernel, RunsTheKernelOfTheChoice) {
   const TemporaryDirectory directory;
   for (std::size_t k = 0; k < kernels().size(); ++k) {
@@ -136,24 +144,8 @@ TEST_F(ChosenKernel, RunsTheKernelOfTheChoice) {
     const std::string file =
         calibration_of_cheapest(static_cast<CostKernel>(k), directory / (kernel + ".toml"));
     const fs::path out = directory / kernel;
-    const Arguments run = {"run",
-                           "--steps",
-                           "60",
-                           "--measure-every",
-                           "30",
-                           "--partitioner",
-                           "auto",
-                           "--refiner",
-                           "none",
-                           "--cost-kernel",
-                           "any",
-                           "--calibration",
-                           file,
-                           "--solver",
-                           "pivot:chosen,pivot:" + kernel,
-                           "--out",
-                           out};
-    ASSERT_EQ(run_cleave(run + kPile).exit_code, 0);
+    const Arguments run = {"run", "--steps", "60", "--measure-every", "30", "--out", out};
+    ASSERT_EQ(run_cleave(run + kPile + chosen_by(file, "pivot:chosen,pivot:" + kernel)).exit_code, 0);
     const CsvTable rows = read_csv(out / "steps.csv");
     std::map<std::string, std::set<std::string>> hashes;  // of each step
     ASSERT_EQ(rows.rows.size(), 4u);
@@ -179,22 +171,10 @@ TEST_F(ChosenKernel, ATreeIsChosenAndKept) {
                         directory / "made"})
                 .exit_code,
             0);
-  const Arguments replay = {"replay",
-                            tower,
-                            "--partitioner",
-                            "auto",
-                            "--refiner",
-                            "none",
-                            "--cost-kernel",
-                            "any",
-                            "--calibration",
-                            file,
-                            "--solver",
-                            "pivot:chosen,pivot:schur-nested,pivot:schur-bodies",
-                            "--write-solutions",
-                            "--out",
-                            out};
-  ASSERT_EQ(run_cleave(replay).exit_code, 0);
+  const Arguments replay = {"replay", tower, "--write-solutions", "--out", out};
+  ASSERT_EQ(
+      run_cleave(replay + chosen_by(file, "pivot:chosen,pivot:schur-nested,pivot:schur-bodies")).exit_code,
+      0);
   const CsvTable rows = read_csv(out / "steps.csv");
   ASSERT_EQ(rows.rows.size(), 3u);
   EXPECT_EQ(rows.at(0, "kernel"), "schur-nested");
@@ -203,9 +183,15 @@ TEST_F(ChosenKernel, ATreeIsChosenAndKept) {
   EXPECT_NE(choice.find("/schur-nested"), std::string::npos) << choice;
   EXPECT_EQ(rows.at(0, "solution_hash"), rows.at(1, "solution_hash"));
   EXPECT_EQ(rows.at(0, "parts"), rows.at(2, "parts"));
-  ProblemFile written = read_problem_file(out / tower.filename());
-  for (const auto& [label, partition] : written.partitions)
+  const ProblemFile written = read_problem_file(out / tower.filename());
+  read_calibration("--calibration", file);
+  ASSERT_EQ(written.partitions.size(), 3u);
+  for (const auto& [label, partition] : written.partitions) {
     EXPECT_GT(partition.parent_of_part.size(), partition.part_of_body.size() / 10) << label;
+    const Split again = Splitter(read_split_setup(partition)).run(written.problem, written.step);
+    EXPECT_EQ(again.parts.part_of_body, partition.part_of_body) << label;
+    EXPECT_EQ(again.parts.parent_of_part, partition.parent_of_part) << label;
+  }
 }
 
 const Arguments kAny = {"--partitioner", "auto@cost-kernel=any,auto@cost-kernel=schur-bodies",

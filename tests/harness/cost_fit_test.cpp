@@ -230,8 +230,7 @@ void expect_near_the_kernels(const StepRecord& row, const Outcome& outcome, cons
   const auto names = cost_kernel_names();
   const auto kernel = static_cast<CostKernel>(std::ranges::find(names, row.kernel) - names.begin());
   const bool whole = kernel == CostKernel::monolithic;
-  const Partition parts = whole ? Partition{std::vector<int>(graph.body_count(), 0), 1}
-                                : Partition{outcome.part_of_body, row.parts, {}, outcome.parent_of_part};
+  const Partition parts = whole ? Partition{std::vector<int>(graph.body_count(), 0), 1} : outcome.parts;
   const CostFeatures features = CostCounter(graph, kernel, 1).count(parts);
   double flops = 0, counted_mflop = row.factor_mflop_local;
   for (const PartCost& part : features.parts) flops += part.factor_flops;

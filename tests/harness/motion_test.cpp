@@ -179,8 +179,8 @@ void expect_marks(const Cell& cell, const StepProblem& problem, const Outcome& o
   }
   double worst = 0;
   for (int body = 0; body < problem.body_count(); ++body) {
-    const bool has_parts = !outcome.part_of_body.empty();
-    EXPECT_EQ(cell.part[body], has_parts ? outcome.part_of_body[body] : kNoPart);
+    const bool has_parts = !outcome.parts.part_of_body.empty();
+    EXPECT_EQ(cell.part[body], has_parts ? outcome.parts.part_of_body[body] : kNoPart);
     EXPECT_EQ(cell.interface[body], cut.contains(body));
     const double residual = largest_at(problem, residuals, body);
     const double impulse = largest_at(problem, outcome.solution.impulse, body);

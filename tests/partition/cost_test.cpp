@@ -72,6 +72,13 @@ std::vector<int> random_tree(Random& random, int parts) {
   return parent_of_part;
 }
 
+// In a tree, or now and then in one level.
+Partition random_parts(Random& random, int bodies) {
+  Partition partition = random_partition(random, bodies);
+  if (random.chance(0.75)) partition.parent_of_part = random_tree(random, partition.part_count);
+  return partition;
+}
+
 TEST(SeparatorNodes, are_those_of_the_slow_twin) {
   int inner = 0;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
@@ -79,8 +86,7 @@ TEST(SeparatorNodes, are_those_of_the_slow_twin) {
     SCOPED_TRACE(describe(bodies) + ", seed " + std::to_string(seed));
     const BodyGraph graph = bodies.graph();
     Random random(seed);
-    Partition partition = random_partition(random, graph.body_count());
-    if (random.chance(0.8)) partition.parent_of_part = random_tree(random, partition.part_count);
+    const Partition partition = random_parts(random, graph.body_count());
     const std::vector<int> nodes =
         separator_nodes(graph, partition.part_of_body, partition.part_count, partition.parent_of_part);
     EXPECT_EQ(nodes, slow_separator_nodes(graph, partition));
@@ -106,8 +112,7 @@ TEST(CostFeatures, are_those_of_the_slow_twin) {
     SCOPED_TRACE(describe(bodies) + ", seed " + std::to_string(seed));
     const BodyGraph graph = bodies.graph();
     Random random(seed);
-    Partition partition = random_partition(random, graph.body_count());
-    if (random.chance(0.7)) partition.parent_of_part = random_tree(random, partition.part_count);
+    const Partition partition = random_parts(random, graph.body_count());
     const double share = random.real(0, 1);
     for (const CostKernel kernel : kKernels) {
       SCOPED_TRACE(cost_kernel_names()[static_cast<int>(kernel)]);
