@@ -127,6 +127,27 @@ const Parameter& trials() {
   return parameter;
 }
 
+const Parameter& karger_method() {
+  static const Parameter parameter{
+      .name = "karger-method",
+      .kind = Kind::word,
+      .default_value = "contract",
+      .words = {"contract", "recursive-bisection"},
+      .help = "contract to the wanted number of parts, or halve by least cuts until parts are small",
+      .source = "partition/README.md"};
+  return parameter;
+}
+
+const Parameter& effort() {
+  static const Parameter parameter{.name = "effort",
+                                   .kind = Kind::word,
+                                   .default_value = "fast",
+                                   .words = {"fast", "best"},
+                                   .help = "few starts on joined bodies, or several on all",
+                                   .source = "partition/README.md"};
+  return parameter;
+}
+
 const Parameter& ufactor() {
   static const Parameter parameter{
       .name = "ufactor",

@@ -28,6 +28,8 @@ const Parameter& max_growth();
 const Parameter& merge_small();
 const Parameter& partition_seed();  // of the dice, for partitioners that draw
 const Parameter& trials();          // of which the best counts
+const Parameter& karger_method();
+const Parameter& effort();  // of multilevel
 const Parameter& ufactor();
 const Parameter& scotch_strategy();
 const Parameter& calibration();   // of the cost model: a fingerprint (calibration.h)

@@ -17,6 +17,7 @@ struct PartitionerEntry : AlgorithmEntry {
   bool of_paper;  // one of Liu & Andrews 2022: what --partitioner paper names
   std::unique_ptr<Partitioner> (*make)(const Settings& settings);  // null: unavailable
   bool needs_groups = false;                                       // of bodies, which not every scene names
+  bool makes_choices = false;                                      // Partition::choice, with a kernel
   // What is left of the promise with these settings; null: all of it.
   PartsPromise (*promise_with)(const PartsPromise& promise, const Settings& settings) = nullptr;
 };

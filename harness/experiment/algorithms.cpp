@@ -220,10 +220,9 @@ bool names_groups(const Algorithm& scene) {
   return names != nullptr && names(scene.settings);
 }
 
-bool needs_groups(const Algorithm& partitioner) {
-  return std::ranges::any_of(partitioners(), [&](const PartitionerEntry& row) {
-    return row.name == partitioner.name && row.needs_groups;
-  });
+const PartitionerEntry& partitioner_row(const Algorithm& partitioner) {
+  return *std::ranges::find_if(partitioners(),
+                               [&](const PartitionerEntry& row) { return row.name == partitioner.name; });
 }
 
 std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, const SolveOptions& options,

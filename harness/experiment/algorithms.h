@@ -11,6 +11,7 @@
 #include "harness/base/about.h"
 #include "harness/base/algorithm.h"
 #include "harness/world/step_context.h"
+#include "partition/registry.h"
 #include "scenarios/scene.h"
 #include "solver/step_solver.h"
 
@@ -74,9 +75,10 @@ std::string owners_of(const std::string& parameter);
 
 const SceneEntry& scene_row(const Algorithm& scene);
 
-// Whether the scene puts bodies into groups, and whether a partitioner splits by them.
+const PartitionerEntry& partitioner_row(const Algorithm& partitioner);
+
+// Whether the scene puts bodies into groups.
 bool names_groups(const Algorithm& scene);
-bool needs_groups(const Algorithm& partitioner);
 
 // Throws std::invalid_argument for an unknown name. context: see ode_baselines.h; must outlive the solver. ODE's
 // own solvers cannot be stopped.

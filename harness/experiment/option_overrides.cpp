@@ -14,12 +14,16 @@ namespace {
 
 constexpr std::string_view kOfCost = "-cost";
 
-// What lowers the modelled time in the refiner's place: itself, or the one that is called after it.
+// What aims at the modelled time in the place of this name: itself, or the one that is called after it. Empty: nothing does.
+std::string twin_of_cost(const std::string& name, const std::vector<std::string>& names) {
+  const std::string twin = name.ends_with(kOfCost) ? name : name + std::string(kOfCost);
+  return std::ranges::count(names, twin) > 0 ? twin : std::string();
+}
+
 std::string refiner_of_cost(const std::string& name) {
-  if (name == "none" || name.ends_with(kOfCost)) return name;
   const std::vector<std::string> names = names_of(refiners());
-  const std::string of_cost = name + std::string(kOfCost);
-  if (std::ranges::count(names, of_cost) > 0) return of_cost;
+  const std::string twin = name == "none" ? name : twin_of_cost(name, names);
+  if (!twin.empty()) return twin;
   std::vector<std::string> allowed = {"none"};
   for (const std::string& other : names)
     if (other.ends_with(kOfCost)) allowed.push_back(other.substr(0, other.size() - kOfCost.size()));
@@ -27,15 +31,40 @@ std::string refiner_of_cost(const std::string& name) {
          "cost is none of refiner '" + name + "'; allowed with it: --refiner " + joined(allowed, ","));
 }
 
+// What grows parts by a rule has no objective, and stays.
+std::string partitioner_of_cost(const std::string& name) {
+  const std::string twin = twin_of_cost(name, names_of(partitioners()));
+  return twin.empty() ? name : twin;
+}
+
+// Every algorithm by its twin, with the parameters that it was given; once, where the twin stands beside it.
+std::vector<Algorithm> of_cost(const std::string& option, const std::vector<Algorithm>& algorithms,
+                               const std::function<std::string(const std::string& name)>& twin_of,
+                               RunOptions& options) {
+  std::vector<Algorithm> changed;
+  for (const Algorithm& a : algorithms) {
+    const std::string twin = twin_of(a.name) + a.text.substr(a.name.size());
+    if (twin == a.text) {
+      changed.push_back(a);
+    } else if (std::ranges::count(algorithms, twin, &Algorithm::text) == 0) {
+      changed.push_back(read_list(option, twin, options.common).front());
+    } else {
+      options.left_out.push_back("--objective cost leaves out " + option + " " + a.text + ", whose place " +
+                                 twin + " takes");
+    }
+  }
+  return changed;
+}
+
 // Why the run cannot have its bodies split by it; empty: it can.
 std::string why_unable(const Algorithm& partitioner, const RunOptions& options) {
   if (options.skip_small_islands && !partitioner.settings.has("max-bodies"))
     return "which has no max-bodies, as --skip-small-islands needs";
   for (const Algorithm& solver : options.solvers)
-    if (solver_halves(solver.name).kernel == kChosenKernel && !partitioner.settings.has("cost-kernel"))
+    if (solver_halves(solver.name).kernel == kChosenKernel && !partitioner_row(partitioner).makes_choices)
       return "which chooses its parts for no kernel, as " + solver.text + " needs";
   const bool has_groups = options.scene.name.empty() || names_groups(options.scene);
-  if (needs_groups(partitioner) && !has_groups)
+  if (partitioner_row(partitioner).needs_groups && !has_groups)
     return "which splits by groups of bodies, and scene " + options.scene.name + " names none";
   return {};
 }
@@ -59,12 +88,10 @@ void override_solvers(const std::map<std::string, std::string>& given, RunOption
   options.solvers = read_list("solver", joined(changed, ","), options.common);
 }
 
-void override_refiners(RunOptions& options) {
+void override_objective(RunOptions& options) {
   if (options.objective == Objective::rows) return;
-  std::vector<std::string> changed;
-  for (const Algorithm& refiner : options.refiners)
-    changed.push_back(refiner_of_cost(refiner.name) + refiner.text.substr(refiner.name.size()));
-  options.refiners = read_list("refiner", joined(changed, ","), options.common);
+  options.refiners = of_cost("refiner", options.refiners, refiner_of_cost, options);
+  options.partitioners = of_cost("partitioner", options.partitioners, partitioner_of_cost, options);
 }
 
 void leave_out_of_all(const std::function<std::string(const Algorithm& partitioner)>& why,

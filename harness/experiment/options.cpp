@@ -140,7 +140,7 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given,
   check_scene_options(scene_row(options.scene), scene_given(options.common));
   read_stiffness(given, options);
   override_solvers(given, options);
-  override_refiners(options);
+  override_objective(options);
   leave_out_unable(given, options);
   read_session(given, options);
   read_friction(options);
@@ -166,7 +166,7 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
   RunOptions options = options_with(read_common(given));
   read_table(given, options);
   override_solvers(given, options);
-  override_refiners(options);
+  override_objective(options);
   leave_out_unable(given, options);
   read_session(given, options);
   check_owned(options, stored, false);

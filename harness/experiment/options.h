@@ -39,7 +39,7 @@ struct RunOptions {
   CommonValues common;           // values given for all algorithms that have a parameter
   RunMode mode = RunMode::lockstep;
   Objective objective =
-      Objective::rows;  // cost: every refiner is the one of that objective, as fm-cost of fm
+      Objective::rows;  // cost: partitioners and refiners by their twins of that objective, as fm-cost of fm
   int steps = 500;
   int measure_every = 1;
   std::vector<int> at;  // ascending: measure these steps only (record); empty: measure_every decides

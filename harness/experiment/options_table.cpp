@@ -160,7 +160,9 @@ std::vector<OptionSpec> experiment_options() {
       algorithms({"refiner", kAbout, kEverywhere}, "NAMES|all|paper", "refiners to compare",
                  at(&RunOptions::refiners)),
       word({"objective", About::partition, kRunAndReplay}, {"rows", "cost"},
-           "what every --refiner lowers: rows of the cut, or the modelled time of a solve, as fm-cost does",
+           "what partitioners and refiners that aim at something lower: rows of the cut, or the modelled "
+           "time of a solve, "
+           "as multilevel-cost and fm-cost do",
            at(&RunOptions::objective)),
       algorithms({"solver", kAbout, kRunAndReplay}, "NAMES",
                  "solvers to compare; one that ignores parts runs once per step", at(&RunOptions::solvers)),

@@ -53,6 +53,7 @@ constexpr PlacedName kPlaced[] = {
     {Place::after_body_order, "order_seed"},
     {Place::after_body_order, "coloring"},
     {Place::after_body_order, "coloring_seed"},
+    {Place::at_end, "seeds"},
 };
 
 std::ptrdiff_t rank_of(const std::string& name) {

@@ -147,6 +147,46 @@ TEST(CostOptions, TheObjectiveReplacesTheRefiner) {
   EXPECT_EQ(replaced.exit_code, 0) << replaced.err;
 }
 
+// What grows by a rule stays; what chooses of several trials chooses by the modelled time.
+TEST(CostOptions, TheObjectiveReplacesPartitionersThatChoose) {
+  const TemporaryDirectory directory;
+  const std::string parts = directory / "parts.txt", own = "file@path=" + parts;
+  std::ofstream file(parts);
+  for (int body = 0; body < 40; ++body) file << body / 20 << "\n";
+  file.close();
+  const Arguments more = {"--refiner", "none", "--max-bodies", "10", "--cost-kernel", "schur-bodies"};
+  const CsvTable option =
+      rows_of(more + Arguments{"--partitioner", "mindp,multilevel@effort=best,karger@trials=5," + own,
+                               "--objective", "cost"},
+              directory / "option");
+  const CsvTable name = rows_of(
+      more + Arguments{"--partitioner", "mindp,multilevel-cost@effort=best,karger-cost@trials=5," + own},
+      directory / "name");
+  ASSERT_EQ(option.rows.size(), 12u);
+  EXPECT_EQ(std::ranges::count(option.column("partitioner"), "mindp"), 3);
+  EXPECT_EQ(std::ranges::count(option.column("partitioner"), "karger-cost@trials=5"), 3);
+  for (const char* column : {"partitioner", "parts", "interface_rows", "calibration", "solution_hash"})
+    EXPECT_EQ(option.column(column), name.column(column)) << column;
+  for (std::size_t row = 0; row < option.rows.size(); ++row)
+    EXPECT_EQ(is_fingerprint(option.at(row, "calibration")),
+              option.at(row, "partitioner").find("-cost") != std::string::npos);
+}
+
+TEST(CostOptions, WhatHasItsTwinBesideItGivesWay) {
+  const TemporaryDirectory directory;
+  const ProgramResult result =
+      run_cleave(kPile + Arguments{"--partitioner", "all", "--refiner", "fm,fm-cost", "--max-bodies", "10",
+                                   "--trials", "2", "--objective", "cost", "--out", directory / "out"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const CsvTable rows = read_csv(directory / "out/steps.csv");
+  EXPECT_EQ(std::ranges::count(rows.column("partitioner"), "multilevel"), 0);
+  EXPECT_EQ(std::ranges::count(rows.column("partitioner"), "multilevel-cost"), 3);
+  EXPECT_EQ(std::ranges::count(rows.column("refiner"), "fm"), 0);
+  for (const char* line : {"--objective cost leaves out refiner fm, whose place fm-cost takes",
+                           "--objective cost leaves out partitioner karger, whose place karger-cost takes"})
+    EXPECT_NE((result.out + result.err).find(line), std::string::npos) << line << "\n" << result.err;
+}
+
 // What was chosen is stored with the parts, so that each file is verified alone; parts that are taken over keep it.
 TEST(CostOptions, StoredPartsOfAutoAreMadeAgain) {
   const TemporaryDirectory directory;

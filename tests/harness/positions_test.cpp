@@ -121,8 +121,7 @@ TEST_F(Positions, AllLeavesOutWhatTheRunCannotUse) {
       std::string::npos)
       << skipping.err;
   // Named itself, it is refused.
-  const ProgramResult named =
-      replay(problem(), "named", {"--partitioner", "single", "--skip-small-islands"});
+  const ProgramResult named = replay(problem(), "named", {"--partitioner", "single", "--skip-small-islands"});
   EXPECT_EQ(named.exit_code, 1);
   EXPECT_NE(named.err.find("partitioner single has no max-bodies"), std::string::npos) << named.err;
 }
@@ -138,7 +137,8 @@ TEST_F(Positions, AllPartitionersSplitByRecursion) {
   int split_by = 0;
   for (const PartitionerEntry& entry : partitioners()) {
     const std::string name = entry.name;
-    if (!entry.unavailable.empty() || name == "file" || needs_groups(read_named("partitioner", name)))
+    if (!entry.unavailable.empty() || name == "file" ||
+        partitioner_row(read_named("partitioner", name)).needs_groups)
       continue;
     EXPECT_GT(std::ranges::count(made, name), 0) << name;
     ++split_by;
