@@ -12,20 +12,28 @@
 
 namespace cleave {
 
-struct PartitionerEntry : AlgorithmEntry {
-  PartsPromise promise;
-  bool of_paper;  // one of Liu & Andrews 2022: what --partitioner paper names
-  std::unique_ptr<Partitioner> (*make)(const Settings& settings);  // null: unavailable
-  bool needs_groups = false;                                       // of bodies, which not every scene names
-  bool makes_choices = false;                                      // Partition::choice, with a kernel
+struct PartitionerTraits {
+  bool of_paper = false;       // one of Liu & Andrews 2022: what --partitioner paper names
+  bool needs_groups = false;   // of bodies, which not every scene names
+  bool makes_choices = false;  // Partition::choice, with a kernel
   // What is left of the promise with these settings; null: all of it.
   PartsPromise (*promise_with)(const PartsPromise& promise, const Settings& settings) = nullptr;
 };
 
-struct RefinerEntry : AlgorithmEntry {
-  bool of_paper;
-  std::unique_ptr<Refiner> (*make)(const Settings& settings);
+struct PartitionerEntry : AlgorithmEntry {
+  PartsPromise promise;
+  std::unique_ptr<Partitioner> (*make)(const Settings& settings);  // null: unavailable
+  PartitionerTraits traits = {};
+};
+
+struct RefinerTraits {
+  bool of_paper = false;
   bool may_raise_cut = false;  // its objective is another
+};
+
+struct RefinerEntry : AlgorithmEntry {
+  std::unique_ptr<Refiner> (*make)(const Settings& settings);
+  RefinerTraits traits = {};
 };
 
 std::span<const PartitionerEntry> partitioners();

@@ -46,8 +46,8 @@ class DirectSolver : public StepSolver {
   DirectSolver(std::string_view strategy, const KernelRow& kernel, const SolveOptions& options,
                const Settings& settings, std::unique_ptr<Strategy> own)
       : strategy_(strategy),
-        kernel_name_(kernel.resolved),
-        splits_(kernel.splits),
+        kernel_name_(kernel.traits.runs_as != nullptr ? kernel.traits.runs_as : kernel.name),
+        splits_(kernel.traits.splits),
         clock_(options.threads, options.dispatch, !options.session),
         kernel_(make_kernel(kernel, settings, options.session)),
         carried_(dynamic_cast<CarriedFactor*>(kernel_.get())),

@@ -67,37 +67,31 @@ std::span<const StrategyRow> strategy_table() {
         "block principal pivoting, hands over to interior-point when stuck",
         "Judice and Pires 1994; Murty 1974",
         {max_iterations(), predictor_sweeps()}},
-       true,
-       nullptr,
-       make_pivot},
+       make_pivot,
+       {.always_exact = true}},
       {{"newton",
         "semi-smooth Newton with exact line search",
         "Qi and Sun 1993; Todorov 2014",
         {max_iterations()}},
-       false,
-       nullptr,
        make_newton},
       {{"interior-point",
         "Mehrotra predictor-corrector with an exact last solve",
         "Mehrotra 1992",
         {max_iterations()}},
-       true,
-       nullptr,
-       make_interior_point},
+       make_interior_point,
+       {.always_exact = true}},
       {{"alternate",
         "parts and interface in turn, as published; may not converge",
         "Peiret et al. 2019, section 5",
         {max_iterations()}},
-       false,
-       "schur-rows",
-       make_alternate},
+       make_alternate,
+       {.only_kernel = "schur-rows"}},
       {{"auto",
         "chosen per step from row kinds, sets, compliance and the impulses at hand",
         "solver/strategies/automatic.h",
         {max_iterations(), predictor_sweeps()}},
-       true,
        nullptr,
-       nullptr},
+       {.always_exact = true}},
   };
   return table;
 }
@@ -105,23 +99,19 @@ std::span<const StrategyRow> strategy_table() {
 std::span<const KernelRow> kernel_table() {
   static const KernelRow table[] = {
       {{"monolithic", "one sparse block Cholesky of M + J^T D J", "Duff and Reid 1983", {reuse_analysis()}},
-       false,
-       "monolithic",
        make_monolithic_kernel},
       {{"schur-rows",
         "parts in parallel, dense interface over the cut rows",
         "Peiret et al. 2019; Liu and Andrews 2022",
         {reuse_analysis()}},
-       true,
-       "schur-rows",
-       make_schur_rows_kernel},
+       make_schur_rows_kernel,
+       {.splits = true}},
       {{"schur-bodies",
         "interiors in parallel, interface on a vertex cover of the cut",
         "solver/kernels/schur_bodies.cpp",
         {reuse_analysis()}},
-       true,
-       "schur-bodies",
-       make_schur_bodies_kernel},
+       make_schur_bodies_kernel,
+       {.splits = true}},
       {{"schur-nested",
         "parts in a tree, interfaces of bodies at every level",
         "George 1973; Karypis and Kumar 1998",
@@ -133,31 +123,24 @@ std::span<const KernelRow> kernel_table() {
           .help =
               "parts that a set of bodies is split into, again and again until each has at most max-bodies",
           .source = "Karypis and Kumar 1998"}}},
-       true,
-       "schur-nested",
-       make_schur_nested_kernel},
-      {{"dense", "one dense matrix, the oracle of the tests", "-", {reuse_analysis()}},
-       false,
-       "dense",
-       make_dense_kernel},
+       make_schur_nested_kernel,
+       {.splits = true}},
+      {{"dense", "one dense matrix, the oracle of the tests", "-", {reuse_analysis()}}, make_dense_kernel},
       {{"auto", "the whole system: monolithic", "solver/kernels/monolithic.cpp", {reuse_analysis()}},
-       false,
-       "monolithic",
-       make_monolithic_kernel},
+       make_monolithic_kernel,
+       {.runs_as = "monolithic"}},
   };
   return table;
 }
 
 std::span<const SolverRow> solver_table() {
   static const SolverRow table[] = {
-      {{"dense", "pivot:dense, the oracle", "-"}, true, "pivot", "dense", nullptr},
-      {{"monolithic", "pivot:monolithic", "-"}, true, "pivot", "monolithic", nullptr},
+      {{"dense", "pivot:dense, the oracle", "-"}, nullptr, {"pivot", "dense"}},
+      {{"monolithic", "pivot:monolithic", "-"}, nullptr, {"pivot", "monolithic"}},
       {{"schur", "pivot:schur-rows, the paper's parallel solver", "Liu and Andrews 2022, section 2"},
-       true,
-       "pivot",
-       "schur-rows",
-       nullptr},
-      {{"exact", "auto:auto", "-"}, true, "auto", "auto", nullptr},
+       nullptr,
+       {"pivot", "schur-rows"}},
+      {{"exact", "auto:auto", "-"}, nullptr, {"auto", "auto"}},
       {{"pgs",
         "projected Gauss-Seidel, constraint by constraint, in several orders",
         "Catto 2005; Poulsen, Niebe and Erleben 2010",
@@ -169,9 +152,6 @@ std::span<const SolverRow> solver_table() {
           .default_value = "1",
           .range = {0, kInfinity},
           .help = "seed of the dice of order=random"}}},
-       false,
-       nullptr,
-       nullptr,
        make_pgs},
       {{"pgs-colored",
         "projected Gauss-Seidel, groups of rows of one colour in parallel",
@@ -189,41 +169,26 @@ std::span<const SolverRow> solver_table() {
           .default_value = "1",
           .range = {0, kInfinity},
           .help = "seed of the dice of coloring=vivace"}}},
-       false,
-       nullptr,
-       nullptr,
        make_pgs_colored},
       {{"pgs-parts",
         "projected Gauss-Seidel within parts in parallel, then over the cut",
         "solver/baselines/pgs_parts.cpp",
         {sweeps(), until()}},
-       false,
-       nullptr,
-       nullptr,
        make_pgs_parts},
       {{"apgd",
         "accelerated projected gradient with restart, best iterate",
         "Mazhar, Heyn, Negrut and Tasora 2015; O'Donoghue and Candes 2015",
         {sweeps(), until()}},
-       false,
-       nullptr,
-       nullptr,
        make_apgd},
       {{"jacobi-split",
         "mass splitting: parallel Jacobi over pairs of bodies",
         "Tonge, Benevolenski and Voroshilov 2012",
         {sweeps(), until()}},
-       false,
-       nullptr,
-       nullptr,
        make_jacobi_split},
       {{"split-domains",
         "parts sweep in parallel on copies of bodies that are averaged",
         "Iglberger and Ruede 2011; Tonge et al. 2012",
         {sweeps(), until()}},
-       false,
-       nullptr,
-       nullptr,
        make_split_domains},
       {{"lemke",
         "Lemke's complementary pivots, lexicographic, dense",
@@ -234,9 +199,6 @@ std::span<const SolverRow> solver_table() {
           .range = {0, kInfinity},
           .help = "rows above which lemke refuses a step: its time grows with their cube",
           .source = "solver/baselines/lemke.cpp"}}},
-       false,
-       nullptr,
-       nullptr,
        make_lemke},
   };
   static const std::vector<SolverRow> all = with_added(table);
@@ -248,7 +210,8 @@ void add_solvers(std::span<const SolverRow> rows) {
 }
 
 bool runs_on(const StrategyRow& strategy, const KernelRow& kernel) {
-  return strategy.only_kernel == nullptr || std::string_view(strategy.only_kernel) == kernel.name;
+  return strategy.traits.only_kernel == nullptr ||
+         std::string_view(strategy.traits.only_kernel) == kernel.name;
 }
 
 std::vector<std::string> all_solver_names() {
@@ -266,15 +229,9 @@ SolverHalves solver_halves(const std::string& name) {
   const std::size_t colon = name.find(':');
   if (colon != std::string::npos) return {name.substr(0, colon), name.substr(colon + 1)};
   const SolverRow* row = find_row(solver_table(), name);
-  return row != nullptr && row->strategy != nullptr ? SolverHalves{row->strategy, row->kernel}
-                                                    : SolverHalves{};
-}
-
-bool is_always_exact(const std::string& name) {
-  const SolverHalves halves = solver_halves(name);
-  if (const StrategyRow* row = find_row(strategy_table(), halves.strategy)) return row->always_exact;
-  const SolverRow* row = find_row(solver_table(), name);
-  return row != nullptr && row->always_exact;
+  return row != nullptr && row->alias.strategy != nullptr
+             ? SolverHalves{row->alias.strategy, row->alias.kernel}
+             : SolverHalves{};
 }
 
 std::vector<Parameter> solver_parameters(const std::string& name) {

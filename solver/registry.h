@@ -16,27 +16,38 @@ namespace cleave {
 class Kernel;    // solver/kernels/kernel.h
 class Strategy;  // solver/strategies/strategy.h
 
-// always_exact: ends within the judge's limit on every problem of boxes or cones that it takes; Coulomb's law may be beyond it.
-// Others say not_converged, honestly.
+struct StrategyTraits {
+  // Ends within the judge's limit on every problem of boxes or cones that it takes; Coulomb's law may be beyond it. Others say
+  // not_converged, honestly.
+  bool always_exact = false;
+  const char* only_kernel = nullptr;  // the one kernel it runs on; nullptr: any
+};
+
 struct StrategyRow : AlgorithmEntry {
-  bool always_exact;
-  const char* only_kernel;                                      // the one kernel it runs on; nullptr: any
   std::unique_ptr<Strategy> (*make)(const Settings& settings);  // nullptr: chosen per step (auto)
+  StrategyTraits traits = {};
+};
+
+struct KernelTraits {
+  bool splits = false;            // uses the partition
+  const char* runs_as = nullptr;  // the kernel that runs under this name; nullptr: itself
 };
 
 struct KernelRow : AlgorithmEntry {
-  bool splits;           // uses the partition
-  const char* resolved;  // what runs under this name
   std::unique_ptr<Kernel> (*make)(const Settings& settings);
+  KernelTraits traits = {};
 };
 
-// Short names: either an alias of strategy:kernel, or a baseline of its own.
+// Short names: either an alias of strategy:kernel, or a baseline of its own, which may miss the judge's limit.
+struct SolverAlias {
+  const char* strategy = nullptr;
+  const char* kernel = nullptr;
+};
+
 struct SolverRow : AlgorithmEntry {
-  bool always_exact;     // of a baseline; an alias is what its strategy is
-  const char* strategy;  // of an alias
-  const char* kernel;
   std::unique_ptr<StepSolver> (*make)(const SolveOptions& options,
-                                      const Settings& settings);  // of a baseline
+                                      const Settings& settings);  // nullptr: an alias, or unavailable
+  SolverAlias alias = {};
 };
 
 std::span<const StrategyRow> strategy_table();
@@ -58,9 +69,6 @@ struct SolverHalves {
   std::string strategy, kernel;
 };
 SolverHalves solver_halves(const std::string& name);
-
-// Whether the solver of this name is always exact.
-bool is_always_exact(const std::string& name);
 
 // What a solver of this name lets its users choose: the parameters of its strategy and its kernel, or its
 // own.

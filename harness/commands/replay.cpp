@@ -98,7 +98,7 @@ void check_files(ReplayOptions& options) {
         unturned.front() + " the first");
   if (without_groups.empty()) return;
   const auto why = [&](const Algorithm& partitioner) {
-    return partitioner_row(partitioner).needs_groups
+    return partitioner_row(partitioner).traits.needs_groups
                ? "which splits by groups of bodies, and " + without_groups + " names none"
                : std::string();
   };

@@ -64,7 +64,7 @@ template <class Row>
 std::vector<std::string> names_of_paper(std::span<const Row> table) {
   std::vector<std::string> names;
   for (const Row& row : table)
-    if (row.of_paper) names.push_back(row.name);
+    if (row.traits.of_paper) names.push_back(row.name);
   return names;
 }
 

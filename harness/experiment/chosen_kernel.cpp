@@ -75,7 +75,7 @@ AlgorithmEntry chosen_kernel() {
 std::vector<std::string> chosen_kernel_solvers() {
   std::vector<std::string> names;
   for (const StrategyRow& strategy : strategy_table())
-    if (strategy.only_kernel == nullptr) names.push_back(pair_name(strategy.name, kChosenKernel));
+    if (strategy.traits.only_kernel == nullptr) names.push_back(pair_name(strategy.name, kChosenKernel));
   return names;
 }
 

@@ -61,10 +61,11 @@ std::string why_unable(const Algorithm& partitioner, const RunOptions& options) 
   if (options.skip_small_islands && !partitioner.settings.has("max-bodies"))
     return "which has no max-bodies, as --skip-small-islands needs";
   for (const Algorithm& solver : options.solvers)
-    if (solver_halves(solver.name).kernel == kChosenKernel && !partitioner_row(partitioner).makes_choices)
+    if (solver_halves(solver.name).kernel == kChosenKernel &&
+        !partitioner_row(partitioner).traits.makes_choices)
       return "which chooses its parts for no kernel, as " + solver.text + " needs";
   const bool has_groups = options.scene.name.empty() || names_groups(options.scene);
-  if (partitioner_row(partitioner).needs_groups && !has_groups)
+  if (partitioner_row(partitioner).traits.needs_groups && !has_groups)
     return "which splits by groups of bodies, and scene " + options.scene.name + " names none";
   return {};
 }

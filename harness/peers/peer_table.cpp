@@ -113,7 +113,7 @@ SolverRow row_of() {
   std::vector<Parameter> parameters = {peer_max_rows(), peer_timeout()};
   for (const ParameterFunction parameter : peer.own)
     if (parameter != nullptr) parameters.push_back(parameter());
-  SolverRow row{{peer.name, peer.help, peer.reference, parameters}, false, nullptr, nullptr, make_peer<I>};
+  SolverRow row{{peer.name, peer.help, peer.reference, parameters}, make_peer<I>};
   if (peer.library.is_there) return row;
   row.make = nullptr;
   row.unavailable = std::string("install ") + peer.library.package + " and build again";

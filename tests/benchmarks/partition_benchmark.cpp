@@ -81,10 +81,10 @@ std::vector<Pair> all_pairs() {
       continue;
     for (const std::string& parameters : variants_of(entry.name)) {
       for (const RefinerEntry& refiner : refiners())
-        if (entry.of_paper || std::string_view(refiner.name) == "none")
+        if (entry.traits.of_paper || std::string_view(refiner.name) == "none")
           pairs.push_back(make_pair_of(entry, parameters, refiner.name));
     }
-    if (!entry.of_paper) continue;
+    if (!entry.traits.of_paper) continue;
     for (const char* refiner : {"fm", "fm-hill"})
       pairs.push_back(make_pair_of(entry, "@merge-small=true", refiner));
   }

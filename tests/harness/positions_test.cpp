@@ -138,7 +138,7 @@ TEST_F(Positions, AllPartitionersSplitByRecursion) {
   for (const PartitionerEntry& entry : partitioners()) {
     const std::string name = entry.name;
     if (!entry.unavailable.empty() || name == "file" ||
-        partitioner_row(read_named("partitioner", name)).needs_groups)
+        partitioner_row(read_named("partitioner", name)).traits.needs_groups)
       continue;
     EXPECT_GT(std::ranges::count(made, name), 0) << name;
     ++split_by;

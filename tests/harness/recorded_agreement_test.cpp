@@ -114,7 +114,7 @@ std::vector<NamedParts> partitions_of(const Recorded& recorded, int max_bodies,
 std::vector<std::string> solvers_that_never_miss() {
   std::vector<std::string> names;
   for (const SolverRow& row : solver_table())
-    if (row.strategy != nullptr) names.emplace_back(row.name);
+    if (row.alias.strategy != nullptr) names.emplace_back(row.name);
   for (const StrategyRow& strategy : strategy_table()) {
     const std::string name = strategy.name;
     if (name == "alternate" || name == "newton") continue;

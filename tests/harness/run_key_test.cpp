@@ -45,7 +45,7 @@ TEST(RunKey, AllStandsForTheNamesItExpandsTo) {
   Arguments all = small_run("x"), named = all, fewer = all;
   std::vector<std::string> names;
   for (const PartitionerEntry& entry : partitioners())
-    if (reason_to_leave_out(entry, {}).empty() && !entry.needs_groups) names.push_back(entry.name);
+    if (reason_to_leave_out(entry, {}).empty() && !entry.traits.needs_groups) names.push_back(entry.name);
   all.insert(all.end(), {"--partitioner", "all", "--refiner", "all"});
   const std::string refiners_named = joined(names_of(refiners()), ",");
   named.insert(named.end(), {"--partitioner", joined(names, ","), "--refiner", refiners_named});

@@ -18,7 +18,7 @@ std::string splitting_solvers() {
   Arguments names = {"exact"};
   for (const StrategyRow& strategy : strategy_table())
     for (const KernelRow& kernel : kernel_table())
-      if (kernel.splits && runs_on(strategy, kernel))
+      if (kernel.traits.splits && runs_on(strategy, kernel))
         names.push_back(std::string(strategy.name) + ":" + kernel.name);
   return joined(names, ",");
 }

@@ -194,7 +194,7 @@ TEST_P(RefinerContract, keeps_all_parts_and_never_raises_the_cut) {
       const RefineOptions options = options_of(GetParam(), random_refine_options(random));
       Partition refined = start;
       const RefineSummary summary = run(GetParam(), graph, options, refined);
-      ASSERT_EQ(refined_fault(bodies, start, refined, options, summary, GetParam().may_raise_cut), "")
+      ASSERT_EQ(refined_fault(bodies, start, refined, options, summary, GetParam().traits.may_raise_cut), "")
           << "seed " << seed << " (" << describe(bodies) << "): " << describe(options);
       ASSERT_EQ(summary.exchanges == 0, first_difference(start, refined).empty()) << "seed " << seed;
     }

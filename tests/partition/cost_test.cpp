@@ -310,6 +310,21 @@ TEST(CheapestTrial, is_the_least_by_the_model) {
   EXPECT_GT(places.size(), 3u) << "the first is the cheapest too often to tell";
 }
 
+// On a ring of equal bodies every cut costs the same, but few are the same.
+TEST(CheapestTrial, is_the_earliest_of_equal_ones) {
+  Bodies ring{.family = "ring", .mass_kg = std::vector<double>(16, 1.0), .links = {}};
+  for (int body = 0; body < 16; ++body) ring.links.push_back({body, (body + 1) % 16, 3});
+  const BodyGraph graph = ring.graph();
+  const std::string bound = "@max-bodies=8@max-growth=0";
+  std::set<std::vector<int>> found;
+  for (int seed = 1; seed <= 9; ++seed)
+    found.insert(
+        make_partitioner("multilevel@partition-seed=" + std::to_string(seed) + bound)->run(graph).part_of_body);
+  ASSERT_GT(found.size(), 1u);
+  EXPECT_EQ(make_partitioner("multilevel-cost@seeds=9" + bound)->run(graph).part_of_body,
+            make_partitioner("multilevel" + bound)->run(graph).part_of_body);
+}
+
 TEST(CheapestTrial, goes_on_from_the_last_seed_with_the_first) {
   Random random(1);
   const BodyGraph graph = pile(random, 4, 4, 3).graph();

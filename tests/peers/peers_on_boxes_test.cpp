@@ -17,7 +17,7 @@ namespace {
 // A row of a library that nobody has, beside those there are. Before the tables are asked for.
 const bool kAdded = [] {
   add_solvers(peer_table());
-  SolverRow absent{{"absent", "-", "-"}, false, nullptr, nullptr, nullptr};
+  SolverRow absent{{"absent", "-", "-"}, nullptr};
   absent.unavailable = "install libabsent-dev and build again";
   add_solvers(std::span(&absent, 1));
   return true;

@@ -140,7 +140,7 @@ class RatiosTest(unittest.TestCase):
         stored_data.write_provenance(root, "friction_cost.csv")
         told = friction.friction_cost(Stored(root))
         self.assertIn("medians of 2 rounds", told)
-        self.assertIn("The solves waited 25 % of their time for a core.", told)
+        self.assertIn("Threads waited 165 ms for a core, in solves of 660 ms.", told)
         self.assertIn("0 of 1 hold: the cone", told)
         self.assertIn("| 200 | 1e-8 | 2 | 22.5 | 41.2 | 1.75 | 2.00 | 10 | 10 | 0 | 0 | no |", told)
         self.assertIn("1 of 1 hold: at least 95 % of the steps are within 1e-6", told)

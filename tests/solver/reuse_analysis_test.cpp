@@ -50,7 +50,7 @@ StepProblem without(StepProblem problem, Drop drop) {
 std::vector<std::string> kernel_names() {
   std::vector<std::string> names;
   for (const KernelRow& row : kernel_table()) {
-    if (std::string_view(row.name) == row.resolved) names.emplace_back(row.name);
+    if (row.traits.runs_as == nullptr) names.emplace_back(row.name);
   }
   return names;
 }

@@ -101,9 +101,9 @@ LAW_HEADER = ("scene", "steps", "box, ms", "Coulomb, ms", "Coulomb / box, of sum
 
 
 def waited(rows):
-    """Of a busy machine the times say less."""
-    share = sum(float(row["t_s_waiting_ms"]) for row in rows) / sum(float(row["t_s_ms"]) for row in rows)
-    return f"The solves waited {text.percent(share)} of their time for a core."
+    """Of a busy machine the times say less. No share: a wait that began before a solve counts whole."""
+    waiting, total = (sum(float(row[column]) for row in rows) for column in ("t_s_waiting_ms", "t_s_ms"))
+    return f"Threads waited {text.number(waiting)} ms for a core, in solves of {text.number(total)} ms."
 
 
 def markdown(rows):
