@@ -1,4 +1,4 @@
-"""A short run of every scene, with every partitioner, refiner and solver, on two threads, in a build with sanitisers."""
+"""Short runs of every scene, with every partitioner, refiner and solver, on two threads, in a build with sanitisers."""
 import csv
 import os
 import pathlib
@@ -41,23 +41,31 @@ def names(what):
 
 class ScenesTest(unittest.TestCase):
 
-    def run_scene(self, scene, *size, steps):
-        """Two measured steps; both threads have something to do."""
-        solvers = ",".join(names("solvers") + [f"{strategy}:{kernel}" for strategy in ("pivot", "interior-point")
-                                               for kernel in ("schur-rows", "schur-bodies")])
+    def rows_of(self, scene, *options, steps):
+        """Two measured steps on two threads, both of which have something to do."""
         with tempfile.TemporaryDirectory() as directory:
-            done = cleave("run", "--scene", scene, *size, "--partitioner", "all", "--refiner", "all", "--max-bodies", 3,
-                          "--solver", solvers, "--repeats", 1, "--threads", 2, "--steps", steps,
-                          "--measure-every", steps // 2, "--out", f"{directory}/out")
+            done = cleave("run", "--scene", scene, *options, "--max-bodies", 3, "--repeats", 1, "--threads", 2,
+                          "--steps", steps, "--measure-every", steps // 2, "--out", f"{directory}/out")
             self.assertIn(done.returncode, (0, 2), done.stderr[-4000:])  # 2: not every solver is exact
             with open(f"{directory}/out/steps.csv", newline="", encoding="utf-8") as file:
                 rows = list(csv.DictReader(file))
-        combinations = {(row["partitioner"], row["refiner"]) for row in rows if row["solver"] == "schur"}
-        left_out = {"file"} if scene in WITH_GROUPS else {"file", "semantic"}
-        self.assertEqual(combinations, {(partitioner, refiner) for refiner in names("refiners")
-                                        for partitioner in set(names("partitioners")) - left_out})
         self.assertGreater(max(int(row["parts"]) for row in rows), 1)
         self.assertEqual(len({row["step"] for row in rows}), 2)
+        return rows
+
+    def run_scene(self, scene, *size, steps):
+        """Every combination by one solver, then every solver with a few of them."""
+        rows = self.rows_of(scene, *size, "--partitioner", "all", "--trials", 10, "--refiner", "all", "--solver", "schur",
+                            steps=steps)
+        left_out = {"file"} if scene in WITH_GROUPS else {"file", "semantic"}
+        self.assertEqual({(row["partitioner"], row["refiner"]) for row in rows},
+                         {(partitioner, refiner) for refiner in names("refiners")
+                          for partitioner in set(names("partitioners")) - left_out})
+        solvers = names("solvers") + [f"{strategy}:{kernel}" for strategy in ("pivot", "interior-point")
+                                      for kernel in ("schur-rows", "schur-bodies", "schur-nested")]
+        rows = self.rows_of(scene, *size, "--partitioner", "mindp,multilevel", "--refiner", "none,fm", "--solver", ",".join(solvers),
+                            steps=steps)
+        self.assertEqual({row["solver"] for row in rows}, set(solvers))
 
     def test_every_scene_has_a_run(self):
         self.assertEqual(set(names("scenes")), {"file", *RUNS})
