@@ -14,9 +14,9 @@
 #include <bit>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 #include "harness/base/dice.h"
 #include "partition/bisection.h"
@@ -117,30 +117,51 @@ class Recursion {
 
 // Bodies of parts above the bound move where that costs least, or to the part of fewest bodies where none next to them has
 // room. Nodes of several bodies may have left some.
-void unload(const BodyGraph& graph, EdgeWeight unit, int most_bodies, Partition& partition) {
-  std::vector<int> bodies = part_sizes(partition);
-  MoveGains gains(graph, unit, partition.part_count);
-  for (int part = 0; part < partition.part_count; ++part) {
-    while (bodies[part] > most_bodies) {
-      Exchange best{std::numeric_limits<int>::min(), 0, -1, 0};
-      for (int body = 0; body < graph.body_count(); ++body) {
-        if (partition.part_of_body[body] != part) continue;
-        for (const MoveGain& move : gains.of(body, partition.part_of_body)) {
-          const Exchange exchange{move.gain, body, move.part, 0};
-          if (bodies[move.part] < most_bodies && (best.second < 0 || best < exchange)) best = exchange;
-        }
-      }
-      if (best.second < 0) {
-        best.first = static_cast<int>(std::ranges::find(partition.part_of_body, part) -
-                                      partition.part_of_body.begin());
-        best.second = static_cast<int>(std::ranges::min_element(bodies) - bodies.begin());
-      }
-      partition.part_of_body[best.first] = best.second;
-      --bodies[part];
-      ++bodies[best.second];
-    }
+class Unloading {
+ public:
+  Unloading(const BodyGraph& graph, EdgeWeight unit, int most_bodies, Partition& partition)
+      : gains_(graph, unit, partition.part_count),
+        most_bodies_(most_bodies),
+        part_of_body_(partition.part_of_body),
+        bodies_(part_sizes(partition)) {}
+
+  void run() {
+    for (int part = 0; part < static_cast<int>(bodies_.size()); ++part)
+      while (bodies_[part] > most_bodies_) move(to_neighbour(part).value_or(anywhere(part)), part);
   }
-}
+
+ private:
+  // The best move of one of its bodies to a part beside it that has room, if there is any.
+  std::optional<Exchange> to_neighbour(int part) {
+    std::optional<Exchange> best;
+    for (int body = 0; body < static_cast<int>(part_of_body_.size()); ++body) {
+      if (part_of_body_[body] != part) continue;
+      for (const MoveGain& move : gains_.of(body, part_of_body_)) {
+        const Exchange exchange{move.gain, body, move.part, 0};
+        if (bodies_[move.part] < most_bodies_ && (!best || *best < exchange)) best = exchange;
+      }
+    }
+    return best;
+  }
+
+  // Its lowest body to the part of fewest bodies.
+  Exchange anywhere(int part) const {
+    const auto first = std::ranges::find(part_of_body_, part) - part_of_body_.begin();
+    const auto smallest = std::ranges::min_element(bodies_) - bodies_.begin();
+    return {0, static_cast<int>(first), static_cast<int>(smallest), 0};
+  }
+
+  void move(const Exchange& exchange, int from) {
+    part_of_body_[exchange.first] = exchange.second;
+    --bodies_[from];
+    ++bodies_[exchange.second];
+  }
+
+  MoveGains gains_;
+  const int most_bodies_;
+  std::vector<int>& part_of_body_;
+  std::vector<int> bodies_;  // by part
+};
 
 class Multilevel final : public Partitioner {
  public:
@@ -176,7 +197,7 @@ class Multilevel final : public Partitioner {
         finer[node] = partition.part_of_body[coarse_of_node[k][node]];
       partition.part_of_body.swap(finer);
     }
-    unload(graph, unit_, most_bodies, partition);
+    Unloading(graph, unit_, most_bodies, partition).run();
     last_->run(graph, max_bodies_, partition);
     return numbered_by_lowest_body(partition.part_of_body);  // without empty ones
   }
