@@ -64,51 +64,58 @@ std::vector<int> row_starts(int bodies, std::span<const ConstraintLink> links) {
   return start;
 }
 
-}  // namespace
-
-BodyGraph::BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links,
-                     std::optional<int> step, std::span<const double> position_m)
-    : mass_kg_(mass_kg.begin(), mass_kg.end()),
-      fixed_rows_(mass_kg.size(), 0),
-      step_(step),
-      position_m_(position_m.begin(), position_m.end()) {
-  check_masses(mass_kg);
-  check_positions(mass_kg.size(), position_m);
-  const int n = body_count();
-  check_links(n, links);
-  const std::vector<int> start = row_starts(n, links);
-  for (const ConstraintLink& link : links) {
-    if (joins_two_bodies(link)) continue;
-    const int body = std::max(link.body_a, link.body_b);
-    if (body >= 0) fixed_rows_[body] += link.rows;
-  }
-
-  std::vector<HalfLink> by_body(start[n]);
+// The half-links of every body from start[body] on, by neighbour. The list is symmetric, so transposing it keeps its rows and
+// sorts every row by neighbour: no comparison sort.
+std::vector<HalfLink> half_links(std::span<const ConstraintLink> links, const std::vector<int>& start) {
+  const int n = static_cast<int>(start.size()) - 1;
+  std::vector<HalfLink> by_body(start[n]), sorted(start[n]);
   std::vector<int> fill(start.begin(), start.end() - 1);
   for (const ConstraintLink& link : links) {
     if (!joins_two_bodies(link)) continue;
     by_body[fill[link.body_a]++] = {link.body_b, link.rows};
     by_body[fill[link.body_b]++] = {link.body_a, link.rows};
   }
-  // The list is symmetric, so transposing it keeps its rows and sorts every row by neighbour: no comparison
-  // sort.
-  std::vector<HalfLink> sorted(start[n]);
   fill.assign(start.begin(), start.end() - 1);
-  for (int i = 0; i < n; ++i) {
+  for (int i = 0; i < n; ++i)
     for (int k = start[i]; k < start[i + 1]; ++k) sorted[fill[by_body[k].neighbour]++] = {i, by_body[k].rows};
-  }
+  return sorted;
+}
 
+// Rows of every body with static geometry, or with itself.
+std::vector<int> count_fixed_rows(int bodies, std::span<const ConstraintLink> links) {
+  std::vector<int> rows(bodies, 0);
+  for (const ConstraintLink& link : links) {
+    const int body = std::max(link.body_a, link.body_b);
+    if (body >= 0 && !joins_two_bodies(link)) rows[body] += link.rows;
+  }
+  return rows;
+}
+
+}  // namespace
+
+BodyGraph::BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links,
+                     std::optional<int> step, std::span<const double> position_m)
+    : mass_kg_(mass_kg.begin(), mass_kg.end()),
+      step_(step),
+      position_m_(position_m.begin(), position_m.end()) {
+  check_masses(mass_kg);
+  check_positions(mass_kg.size(), position_m);
+  const int n = body_count();
+  check_links(n, links);
+  fixed_rows_ = count_fixed_rows(n, links);
+  const std::vector<int> start = row_starts(n, links);
+  const std::vector<HalfLink> half = half_links(links, start);
   first_.assign(1, 0);
   first_.reserve(n + 1);
   for (int i = 0; i < n; ++i) {
     for (int k = start[i]; k < start[i + 1]; ++k) {
-      if (k == start[i] || sorted[k].neighbour != sorted[k - 1].neighbour) {
-        neighbour_.push_back(sorted[k].neighbour);
+      if (k == start[i] || half[k].neighbour != half[k - 1].neighbour) {
+        neighbour_.push_back(half[k].neighbour);
         constraints_.push_back(0);
         rows_.push_back(0);
       }
       ++constraints_.back();
-      rows_.back() += sorted[k].rows;
+      rows_.back() += half[k].rows;
     }
     first_.push_back(static_cast<int>(neighbour_.size()));
   }

@@ -9,6 +9,7 @@
 
 #include "harness/base/hash.h"
 #include "harness/base/numbers.h"
+#include "harness/base/value_spans.h"
 #include "harness/commands/stored_partition.h"
 #include "harness/experiment/algorithms.h"
 #include "harness/experiment/friction.h"

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
 #include <iterator>
 #include <new>
 
 #include "harness/base/hash.h"
+#include "harness/base/value_spans.h"
 #include "harness/experiment/cell_measures.h"
 #include "harness/experiment/friction_mismatch.h"
 #include "solver/dispatch_cost.h"
@@ -21,10 +21,6 @@ Parts solver_parts(const std::optional<Split>& split) {
   Parts parts(split->parts.part_of_body, split->parts.parent_of_part);
   parts.kernel = kernel_of_choice(split->parts.choice);
   return parts;
-}
-
-bool all_finite(std::span<const double> values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
 // The judge's word counts: a solver that says ok is believed only within the limit.

@@ -9,6 +9,7 @@
 #include "harness/base/larger_or_nan.h"
 #include "harness/base/median.h"
 #include "harness/base/numbers.h"
+#include "harness/base/value_spans.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/friction_box.h"
 #include "harness/experiment/friction_cone.h"

@@ -8,6 +8,7 @@
 
 #include "harness/base/hash.h"
 #include "harness/base/stopwatch.h"
+#include "harness/base/value_spans.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/step_columns.h"
 #include "harness/world/contact_memory.h"

@@ -1,11 +1,9 @@
 #include "harness/experiment/step_columns.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "harness/base/hash.h"
-#include "harness/base/larger_or_nan.h"
 #include "harness/base/names.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/option_values.h"
@@ -84,13 +82,6 @@ double deepest_m(std::span<const ContactPoint> contacts) {
   double deepest = 0;
   for (const ContactPoint& contact : contacts) deepest = std::max(deepest, contact.depth_m);
   return deepest;
-}
-
-double largest_difference(std::span<const double> a, std::span<const double> b) {
-  if (a.size() != b.size()) return kUnmeasured;
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = larger_or_nan(largest, std::abs(a[i] - b[i]));
-  return largest;
 }
 
 }  // namespace cleave

@@ -29,7 +29,4 @@ void set_problem_columns(const StepProblem& problem, StepRecord& row);
 // Depth of the deepest contact; 0 without contacts.
 double deepest_m(std::span<const ContactPoint> contacts);
 
-// Largest |a_i - b_i|; NaN when one is no number or the sizes differ.
-double largest_difference(std::span<const double> a, std::span<const double> b);
-
 }  // namespace cleave

@@ -1,8 +1,9 @@
 #include "harness/peers/peer_solver.h"
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 
+#include "harness/base/value_spans.h"
 #include "harness/peers/peer_process.h"
 #include "solver/impulse_set.h"
 #include "solver/residual.h"
@@ -20,10 +21,6 @@ const char* law_text(ContactSet law) {
       return "Coulomb's law";
   }
   return "";
-}
-
-bool all_finite(std::span<const double> values) {
-  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
 StageTimes times_of(double solve_ms) {

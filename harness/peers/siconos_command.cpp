@@ -1,23 +1,17 @@
 #include "harness/peers/siconos_command.h"
 
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
 
 #include "harness/base/numbers.h"
+#include "harness/base/value_spans.h"
 #include "harness/files/problem_file.h"
 #include "harness/peers/siconos.h"
 #include "solver/residual.h"
 
 namespace cleave {
 namespace {
-
-double largest_difference(std::span<const double> a, std::span<const double> b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
-  return largest;
-}
 
 double error_of(const std::string& path, const StepProblem& problem, std::span<const double> impulse) {
   try {
