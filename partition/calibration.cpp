@@ -237,7 +237,7 @@ std::vector<KernelCost> kernel_costs(const Settings& settings) {
 KernelCost kernel_cost(const Settings& settings) {
   const std::string& kernel = settings.text(parameters::cost_kernel().name);
   if (kernel == parameters::kAnyKernel)
-    refuse("cost-kernel", kernel, "one kernel; only auto chooses among all");
+    refuse("--cost-kernel", kernel, "one kernel; only auto chooses among all");
   return kernel_costs(settings).front();
 }
 

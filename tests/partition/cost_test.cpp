@@ -400,7 +400,7 @@ TEST(Auto, alone_chooses_among_kernels) {
     make_refiner("fm-cost@cost-kernel=any");
     FAIL() << "was made";
   } catch (const std::invalid_argument& error) {
-    EXPECT_STREQ(error.what(), "cost-kernel is any, allowed: one kernel; only auto chooses among all");
+    EXPECT_STREQ(error.what(), "--cost-kernel is any, allowed: one kernel; only auto chooses among all");
   }
 }
 
