@@ -14,7 +14,7 @@ from cleave_scripts.results.errors import AlreadyTold, Interrupted, ResultError
 from cleave_scripts.results.programs import run_and_watch
 
 FAILED_CELLS = 2  # the exit code of a campaign whose results stand all the same
-KEPT = "up to 3 more where cleave is not built; what is complete is kept"
+KEPT = "up to 7 more where cleave is not built; what is complete is kept"
 
 
 def add_options(parser, steps, measured, out):
