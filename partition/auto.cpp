@@ -113,8 +113,7 @@ class Auto final : public Partitioner {
 
   void choose(const BodyGraph& graph) const {
     std::vector<CostCounter> counters;
-    for (const KernelCost& cost : costs_)
-      counters.emplace_back(graph, cost.kernel, cost.active_share.of(graph));
+    for (const KernelCost& cost : costs_) counters.push_back(cost_counter(graph, cost));
     double least_ms = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < candidates_.size(); ++k) {
       if (k > 0 && !candidates_[k].splits(graph)) continue;

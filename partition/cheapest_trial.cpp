@@ -6,8 +6,10 @@
 // of equal ones the earliest. P_t are the parts of one trial with dice of seed (partition-seed + t) mod 2^31. Each is found as
 // the cut asks for, and only chosen by its time: `fm-cost` is what lowers the time of the one that is chosen.
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "partition/calibration.h"
@@ -41,7 +43,7 @@ class CheapestTrial final : public Partitioner {
 
  private:
   Partition do_run(const BodyGraph& graph) const override {
-    CostCounter counter(graph, cost_.kernel, cost_.active_share.of(graph));
+    CostCounter counter = cost_counter(graph, cost_);
     double least_ms = std::numeric_limits<double>::infinity();
     Partition cheapest;
     for (const auto& trial : trials_) {

@@ -100,6 +100,10 @@ double ExpectedActiveShare::of(const BodyGraph& graph) const {
 
 ExpectedActiveShare ExpectedActiveShare::always(double share) { return {-std::log(1 - share), 0, 0}; }
 
+CostCounter cost_counter(const BodyGraph& graph, const KernelCost& cost) {
+  return {graph, cost.kernel, cost.active_share.of(graph)};
+}
+
 double modelled_ms(const CostFeatures& features, const KernelCost& cost) {
   const std::array<double, kCostTerms> units =
       unit_costs_ms(features, cost.threads, cost.factorizations.of(features));

@@ -74,6 +74,9 @@ struct KernelCost {
 std::array<double, kCostTerms> unit_costs_ms(const CostFeatures& features, int threads,
                                              double factorizations);
 
+// Counts for this kernel, with the active share that is expected of the graph.
+CostCounter cost_counter(const BodyGraph& graph, const KernelCost& cost);
+
 // Of a solve with the expected number of factorisations.
 double modelled_ms(const CostFeatures& features, const KernelCost& cost);
 

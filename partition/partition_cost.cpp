@@ -7,7 +7,7 @@ namespace cleave {
 
 PartitionCost::PartitionCost(const BodyGraph& graph, const KernelCost& cost, const Partition& start)
     : cost_(cost),
-      counter_(graph, cost.kernel, cost.active_share.of(graph)),
+      counter_(cost_counter(graph, cost)),
       partition_(start),
       bodies_(start.part_count),
       features_(counter_.count(start)),

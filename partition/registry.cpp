@@ -284,8 +284,12 @@ std::span<const RefinerEntry> refiners() {
   return table;
 }
 
+const PartitionerEntry& partitioner_row(const std::string& name) {
+  return find_row(partitioners(), "partitioner", name);
+}
+
 std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm) {
-  const PartitionerEntry& entry = find_row(partitioners(), "partitioner", algorithm.name);
+  const PartitionerEntry& entry = partitioner_row(algorithm.name);
   check_available("partitioner", entry);
   std::unique_ptr<Partitioner> made = entry.make(algorithm.settings);
   const Settings& settings = algorithm.settings;

@@ -26,6 +26,7 @@
 #include "harness/files/manifest.h"
 #include "harness/files/output_directory.h"
 #include "harness/files/problem_file.h"
+#include "partition/registry.h"
 #include "solver/parallel_tasks.h"
 
 namespace cleave {
@@ -98,7 +99,7 @@ void check_files(ReplayOptions& options) {
         unturned.front() + " the first");
   if (without_groups.empty()) return;
   const auto why = [&](const Algorithm& partitioner) {
-    return partitioner_row(partitioner).traits.needs_groups
+    return partitioner_row(partitioner.name).traits.needs_groups
                ? "which splits by groups of bodies, and " + without_groups + " names none"
                : std::string();
   };

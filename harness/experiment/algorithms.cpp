@@ -199,14 +199,18 @@ Algorithm read_named(const std::string& option, const std::string& text, const C
   return algorithm;
 }
 
+void append_once(const std::string& option, const std::string& item, Algorithm algorithm,
+                 std::vector<Algorithm>& list) {
+  if (std::ranges::count(list, algorithm.text, &Algorithm::text) > 0)
+    throw std::invalid_argument("--" + option + ": '" + item + "' is named twice");
+  list.push_back(std::move(algorithm));
+}
+
 std::vector<Algorithm> read_list(const std::string& option, const std::string& text,
                                  const CommonValues& common, std::vector<std::string>* left_out) {
   std::vector<Algorithm> list;
   for (const std::string& item : expanded(option, text, common, left_out)) {
-    Algorithm algorithm = read_named(option, item, common);
-    if (std::ranges::count(list, algorithm.text, &Algorithm::text) > 0)
-      throw std::invalid_argument("--" + option + ": '" + item + "' is named twice");
-    list.push_back(std::move(algorithm));
+    append_once(option, item, read_named(option, item, common), list);
   }
   return list;
 }
@@ -218,11 +222,6 @@ const SceneEntry& scene_row(const Algorithm& scene) {
 bool names_groups(const Algorithm& scene) {
   const auto names = scene_row(scene).names_groups;
   return names != nullptr && names(scene.settings);
-}
-
-const PartitionerEntry& partitioner_row(const Algorithm& partitioner) {
-  return *std::ranges::find_if(partitioners(),
-                               [&](const PartitionerEntry& row) { return row.name == partitioner.name; });
 }
 
 std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, const SolveOptions& options,

@@ -11,7 +11,6 @@
 #include "harness/base/about.h"
 #include "harness/base/algorithm.h"
 #include "harness/world/step_context.h"
-#include "partition/registry.h"
 #include "scenarios/scene.h"
 #include "solver/step_solver.h"
 
@@ -45,6 +44,10 @@ void check_algorithm(const std::string& option, const std::string& text);
 // "file@path=a.txt" has the text "file@1f2e3d4c5b6a7988".
 Algorithm read_named(const std::string& option, const std::string& text, const CommonValues& common = {});
 
+// Throws std::invalid_argument, naming the item, where the list has the algorithm already.
+void append_once(const std::string& option, const std::string& item, Algorithm algorithm,
+                 std::vector<Algorithm>& list);
+
 // Reads a list: items as above, none twice, and where the kind has them the keywords
 //     all     every algorithm of this build that needs no more than is given; what is left out goes to `left_out`, in
 //             words. Options leave out partitioners too that the run's solvers cannot use
@@ -74,8 +77,6 @@ const CommonParameter* find_common_parameter(const std::string& name);  // nullp
 std::string owners_of(const std::string& parameter);
 
 const SceneEntry& scene_row(const Algorithm& scene);
-
-const PartitionerEntry& partitioner_row(const Algorithm& partitioner);
 
 // Whether the scene puts bodies into groups.
 bool names_groups(const Algorithm& scene);

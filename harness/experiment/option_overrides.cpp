@@ -37,36 +37,32 @@ std::string partitioner_of_cost(const std::string& name) {
   return twin.empty() ? name : twin;
 }
 
-// Every algorithm by its twin, with the parameters that it was given; once, where the twin stands beside it.
+// Every algorithm by its twin, with the parameters that it was given. What has no twin is not read again.
 std::vector<Algorithm> of_cost(const std::string& option, const std::vector<Algorithm>& algorithms,
                                const std::function<std::string(const std::string& name)>& twin_of,
-                               RunOptions& options) {
+                               const CommonValues& common) {
   std::vector<Algorithm> changed;
   for (const Algorithm& a : algorithms) {
     const std::string twin = twin_of(a.name) + a.text.substr(a.name.size());
-    if (twin == a.text) {
-      changed.push_back(a);
-    } else if (std::ranges::count(algorithms, twin, &Algorithm::text) == 0) {
-      changed.push_back(read_list(option, twin, options.common).front());
-    } else {
-      options.left_out.push_back("--objective cost leaves out " + option + " " + a.text + ", whose place " +
-                                 twin + " takes");
-    }
+    append_once(option, twin, twin == a.text ? a : read_named(option, twin, common), changed);
   }
   return changed;
 }
 
 // Why the run cannot have its bodies split by it; empty: it can.
 std::string why_unable(const Algorithm& partitioner, const RunOptions& options) {
+  const PartitionerEntry& row = partitioner_row(partitioner.name);
   if (options.skip_small_islands && !partitioner.settings.has("max-bodies"))
     return "which has no max-bodies, as --skip-small-islands needs";
   for (const Algorithm& solver : options.solvers)
-    if (solver_halves(solver.name).kernel == kChosenKernel &&
-        !partitioner_row(partitioner).traits.makes_choices)
+    if (solver_halves(solver.name).kernel == kChosenKernel && !row.traits.makes_choices)
       return "which chooses its parts for no kernel, as " + solver.text + " needs";
   const bool has_groups = options.scene.name.empty() || names_groups(options.scene);
-  if (partitioner_row(partitioner).traits.needs_groups && !has_groups)
+  if (row.traits.needs_groups && !has_groups)
     return "which splits by groups of bodies, and scene " + options.scene.name + " names none";
+  const std::string twin = partitioner_of_cost(partitioner.name);
+  if (options.objective == Objective::cost && twin != partitioner.name)
+    return "which " + twin + " replaces under --objective cost";
   return {};
 }
 
@@ -91,8 +87,8 @@ void override_solvers(const std::map<std::string, std::string>& given, RunOption
 
 void override_objective(RunOptions& options) {
   if (options.objective == Objective::rows) return;
-  options.refiners = of_cost("refiner", options.refiners, refiner_of_cost, options);
-  options.partitioners = of_cost("partitioner", options.partitioners, partitioner_of_cost, options);
+  options.refiners = of_cost("refiner", options.refiners, refiner_of_cost, options.common);
+  options.partitioners = of_cost("partitioner", options.partitioners, partitioner_of_cost, options.common);
 }
 
 void leave_out_of_all(const std::function<std::string(const Algorithm& partitioner)>& why,

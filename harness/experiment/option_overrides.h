@@ -12,7 +12,8 @@ namespace cleave {
 // --strategy and --kernel: one or both halves of every solver name.
 void override_solvers(const std::map<std::string, std::string>& given, RunOptions& options);
 
-// --objective: every refiner by the one that has it, and every partitioner that has a twin of that objective by its twin.
+// --objective: every refiner by the one that has it, and every partitioner that has a twin of that objective by its twin. After
+// leave_out_unable.
 void override_objective(RunOptions& options);
 
 // Takes out of options.partitioners those that stand for `all` and that `why` gives a reason for ("which ..."); the reason

@@ -140,8 +140,8 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given,
   check_scene_options(scene_row(options.scene), scene_given(options.common));
   read_stiffness(given, options);
   override_solvers(given, options);
-  override_objective(options);
   leave_out_unable(given, options);
+  override_objective(options);
   read_session(given, options);
   read_friction(options);
   if (options.model == Model::automatic) check_reads_problem(options);
@@ -166,8 +166,8 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
   RunOptions options = options_with(read_common(given));
   read_table(given, options);
   override_solvers(given, options);
-  override_objective(options);
   leave_out_unable(given, options);
+  override_objective(options);
   read_session(given, options);
   check_owned(options, stored, false);
   for (const AlgorithmEntry& ode : ode_baselines())
