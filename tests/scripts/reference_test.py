@@ -46,7 +46,8 @@ LEFT = {
 # Campaigns and the labels of their cells.
 CAMPAIGNS = {
     "reproduce": {"paper": ["chain_drop", "log_tower", "rock_pile", "large_rock_pile"]},
-    "report_runs": {"scaling": ["bodies_50"], "report": ["one_thread/rock_pile", "motion/rock_pile"]},
+    "report_runs": {"scaling": ["bodies_50"], "report": ["motion/rock_pile", *(
+        f"{name}/rock_pile" for name in ("one_thread", "schur_bodies", "solvers", "every_step", "karger"))]},
 }
 if code in (0, 2, 3):
     for campaign, labels in CAMPAIGNS.get(name, {}).items():
@@ -122,11 +123,30 @@ class ReferenceTest(unittest.TestCase):
             "two_threads.csv", "karger.csv", "partition_over_time.csv", "partition_worth.csv", "partition_worth.png", "partition_regret.csv", "tradeoff.csv", "tradeoff_partitions.csv",
             "tradeoff_motion.csv", "time_to_accuracy.png", "crossover.png", "accuracy_profile.png", "model_savings.csv", "campaign_costs.csv", "friction_cost.csv", "friction_motion.csv", "friction_velocities.csv", "coulomb_peers.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
             "verdict_map.png", "modelled_workers.csv", "running_simulation.csv", "large_scenes.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
-            "report/verdicts.csv", *(f"report/{run}/{file}" for run in ("scaling/bodies_50", "one_thread/rock_pile")
+            "report/verdicts.csv", *(f"report/{run}/{file}" for run in (
+                "scaling/bodies_50", *(f"{name}/rock_pile" for name in ("one_thread", "schur_bodies", "solvers", "every_step", "karger")))
                                      for file in ("manifest.json", "steps.csv", "checksums")),
             "figures/figure2.png", *(f"full/{scene}/{file}" for scene in
                                      ("chain_drop", "log_tower", "rock_pile", "large_rock_pile")
                                      for file in ("manifest.json", "steps.csv", "checksums"))})
+
+    def test_what_a_kept_stage_has_lost_is_told_and_nothing_is_stored(self):
+        self.run_it()
+        before = self.results()
+        for lost, told in (("tradeoff/crossover.png", "stage tradeoff: .* has no crossover.png; nothing is stored"),
+                           ("report/scaling/cells/bodies_50/steps.csv", "stage report_runs: .* has no steps.csv below scaling; nothing is stored")):
+            self.git("checkout", "-q", "--", ".")
+            self.git("clean", "-q", "-fd")
+            path = self.root / "out/reference" / lost
+            kept = path.read_bytes()
+            path.unlink()
+            _, said = self.run_it(code=1)
+            self.assertRegex(said, told)
+            self.assertEqual(self.results(), {"README.md", "torture/torture.json", "old/steps.csv"})
+            path.write_bytes(kept)
+        self.git("checkout", "-q", "--", ".")
+        self.run_it()
+        self.assertEqual(self.results(), before)
 
     def test_paths_in_manifests_are_relative_and_files_without_one_have_provenance(self):
         self.run_it()

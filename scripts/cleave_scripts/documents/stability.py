@@ -63,7 +63,7 @@ def ladder_full(stored):
         steps, ratio = int(last["steps"]), last["value"]
         lines.append(
             f"Five boxes of 1 kg under one of {ratio} kg (`cleave run --scene ladder_heavy_top --mass-ratio {ratio} "
-            f"--cfm 1e-10 --steps {steps} --solver exact`) stand, after {steps / 60:.0f} s, within "
+            f"--cfm 1e-10 --steps {steps} --solver exact --out out/heavy_top`) stand, after {steps / 60:.0f} s, within "
             f"{text.number(1000 * float(last['height_error_m']), 2)} mm of the closed form, in which the compliance "
             f"lets them sag {text.number(1000 * float(last['sag_m']), 2)} mm.")
     return "\n".join(lines)

@@ -50,7 +50,8 @@ def worth(stored):
                       *(_worth_cell(problem.best[solver, 1]) for solver in partition_worth.NAMES),
                       f"{partition_worth.NAMES[two].split(',')[0]}, {text.number(problem.base_ms / problem.measured[two].time_ms)}",
                       *(_winner(problem, workers) for workers in SHOWN_WORKERS)])
-    return (f"Least t_pr + t_s of every solver over all partitions tried, ms, one thread, and the partition that gave it (`{WORTH[1]}`; "
+    return (f"Least t_pr + t_s of every solver over all partitions tried, ms, one thread, and in brackets the partition that gave it: partitioner, its "
+            f"effort or split, most bodies of a part, refiner (`{WORTH[1]}`; "
             f"{stored.origin(WORTH[0])}); then the fastest on two threads, and of the modelled {' and '.join(map(str, SHOWN_WORKERS))} workers, "
             "with its speed-up against the fastest on one:\n\n" +
             text.table(["", *partition_worth.NAMES.values(), "two threads", *(f"{workers} workers" for workers in SHOWN_WORKERS)], lines))

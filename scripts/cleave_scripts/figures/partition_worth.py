@@ -3,6 +3,7 @@ from cleave_scripts.figures import looks, style
 from cleave_scripts.measurements.partition_worth import NAMES, WORKERS
 
 IDEAL = {"color": "#BBBBBB", "linewidth": 3, "zorder": 1}
+APART = 1.13  # from one measured mark to the next, which would hide each other at 2 workers
 
 
 def draw(problems):
@@ -10,18 +11,20 @@ def draw(problems):
     marks = looks.marks(NAMES)
     for ax, problem in zip(axes, problems):
         ax.plot(WORKERS, WORKERS, **IDEAL)
-        for solver, look in marks.items():
+        for number, (solver, look) in enumerate(marks.items()):
             if (solver, 1) not in problem.best:
                 continue
             ax.plot(WORKERS, [problem.speed_up(solver, workers) for workers in WORKERS], **look, markersize=3, linewidth=1)
             if solver in problem.measured:
-                ax.plot(2, problem.base_ms / problem.measured[solver].time_ms, color=look["color"], marker=look["marker"],
+                ax.plot(2 * APART ** (number - (len(marks) - 1) / 2), problem.base_ms / problem.measured[solver].time_ms, color=look["color"], marker=look["marker"],
                         markersize=5.5, markeredgecolor=style.INK, markeredgewidth=0.7, zorder=5)
         scene, bodies, cfm = problem.key
         ax.set_title(f"{scene.replace('_', ' ')}, {bodies} bodies\n{problem.rows} rows, cfm {float(cfm):g}", fontsize=7.5)
         ax.set(xscale="log", yscale="log", xlabel="workers", ylabel="speed-up")
         ax.set_xticks(WORKERS, list(map(str, WORKERS)))
-        ax.set_ylim(0.04, 20)
+        ax.set_ylim(0.5, 8)
+        ax.set_yticks([0.5, 1, 2, 4, 8])
+        ax.yaxis.set_minor_locator(style.matplotlib.ticker.NullLocator())
         ax.xaxis.set_minor_locator(style.matplotlib.ticker.NullLocator())
         ax.yaxis.set_major_formatter(style.matplotlib.ticker.FuncFormatter(lambda value, _: style.short(value)))
     lines = [style.matplotlib.lines.Line2D([], [], **look, markersize=4, label=NAMES[solver]) for solver, look in marks.items()]

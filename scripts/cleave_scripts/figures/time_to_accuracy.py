@@ -85,6 +85,10 @@ def draw_crossover(found):
                     [min(problem.against_exact(limit), top) for problem in points[axis]], color=colour, marker="o", markersize=3)
         ax.axhline(1, color=style.INK, linewidth=0.8)
         ax.set(xscale="log", yscale="log")
+        if axis.of(points[axis][-1]) < 100 * axis.of(points[axis][0]):  # hardly a power of ten in it: the points themselves
+            ax.set_xticks([axis.of(problem) for problem in points[axis]])
+            ax.xaxis.set_minor_locator(style.matplotlib.ticker.NullLocator())
+            ax.xaxis.set_major_formatter(style.matplotlib.ticker.FuncFormatter(lambda value, _: style.short(value)))
     axes[0].set_ylabel("fastest that iterates over exact,\n$t_s$ (above 1 exact is faster)")
     style.legend_above(figure, [style.matplotlib.lines.Line2D([], [], color=colour, marker="o", markersize=3, label=f"to {text.power(limit)} m/s")
                                 for limit, colour in zip(crossover.LIMITS, colours)], columns=len(colours))

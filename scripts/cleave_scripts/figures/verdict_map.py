@@ -36,7 +36,9 @@ def draw_map(rows):
     ax.set_xticks(numpy.arange(len(columns)) + 0.5, [size for _, _, size in columns], fontsize=6)
     ax.set_xlabel("n_max, bodies of a part")
     _groups(ax, columns)
-    figure.colorbar(image, ax=ax, label="share of settings in which it holds", pad=0.01, fraction=0.02).outline.set_visible(False)
+    bar = figure.colorbar(image, ax=ax, label="settings in which it holds, %", pad=0.01, fraction=0.02)
+    bar.ax.yaxis.set_major_formatter(style.matplotlib.ticker.PercentFormatter(1, symbol=""))
+    bar.outline.set_visible(False)
     return figure, _caption(rows)
 
 

@@ -8,6 +8,9 @@ import collections
 import dataclasses
 import math
 
+from cleave_scripts.results.names import NO_PARTITIONER
+from cleave_scripts.results.rows import combination, has_parts, relative_residual, total_ms
+
 KEY = ("series", "scene", "bodies", "mass_ratio", "cfm", "step")
 COLUMNS = (*KEY, "rows", "solver", "partitioner", "refiner", "iterations", "residual_m_per_s", "largest_free_velocity_m_per_s", "t_pr_ms",
            "t_s_ms", "status")
@@ -77,16 +80,8 @@ def method_of(row):
     """A solver's text without its budget, and the parts it was given."""
     name, *parameters = row["solver"].split("@")
     kept = [text for text in parameters if text.partition("=")[0] not in (*BUDGET, REFUSES)]
-    parts = "" if row["partitioner"] == "-" else f", {row['partitioner']}+{row['refiner']}"
+    parts = f", {combination(row)}" if has_parts(row) else ""
     return "@".join([name, *kept]) + parts
-
-
-def _relative_residual(row):
-    return float(row["residual_m_per_s"]) / max(1.0, float(row["largest_free_velocity_m_per_s"]))
-
-
-def _total_ms(row):
-    return float(row["t_s_ms"]) + (0 if row["partitioner"] == "-" else float(row["t_pr_ms"]))
 
 
 def sweep_costs(rows):
@@ -95,7 +90,7 @@ def sweep_costs(rows):
     for row in rows:
         sweeps = int(row["iterations"])
         if "@until=" in row["solver"] and sweeps >= LEAST_SWEEPS:
-            found.setdefault(method_of({**row, "partitioner": "-"}), []).append(1e6 * float(row["t_s_ms"]) / sweeps / int(row["rows"]))
+            found.setdefault(method_of({**row, "partitioner": NO_PARTITIONER}), []).append(1e6 * float(row["t_s_ms"]) / sweeps / int(row["rows"]))
     return found
 
 
@@ -120,8 +115,8 @@ def problems(rows):
         if any(f"@{name}=" in row["solver"] for name in BUDGET):
             iterative[method] = True
         for limit in LIMITS:
-            if _relative_residual(row) <= limit:
-                reached[limit] = min(reached[limit], _total_ms(row))
+            if relative_residual(row) <= limit:
+                reached[limit] = min(reached[limit], total_ms(row))
     return [Problem(key, count, times, tuple(iterative)) for key, (count, times, iterative) in found.items()]
 
 

@@ -5,6 +5,7 @@ from cleave_scripts.results.campaign import campaign_cells
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.steps import load_steps
 from cleave_scripts.results.whole_file import write_rows
+from cleave_scripts.table import text
 
 NUMBER = r"[0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?"
 NAME = re.compile(rf"ratio_(?P<mass_ratio>{NUMBER})_(?P<scene>.+)_cfm_(?P<cfm>{NUMBER})_seed_(?P<seed>[0-9]+)")
@@ -59,12 +60,9 @@ def _describe(steps):
 
 def markdown(table):
     cfms = sorted({cfm for found in table.values() for cfm in found}, key=float, reverse=True)
-    lines = ["| mass ratio | scene | steps | " + " | ".join(f"cfm {cfm}" for cfm in cfms) + " |",
-             "|---" * (3 + len(cfms)) + "|"]
-    for (ratio, scene), found in sorted(table.items(), key=lambda item: (float(item[0][0]), item[0][1])):
-        texts = [_describe(found[cfm]) if cfm in found else "-" for cfm in cfms]
-        lines.append(f"| {ratio} | {scene} | {sum(map(len, found.values()))} | " + " | ".join(texts) + " |")
-    return "\n".join(lines)
+    lines = [[ratio, scene, sum(map(len, found.values())), *(_describe(found[cfm]) if cfm in found else "-" for cfm in cfms)]
+             for (ratio, scene), found in sorted(table.items(), key=lambda item: (float(item[0][0]), item[0][1]))]
+    return text.table(["mass ratio", "scene", "steps", *(f"cfm {cfm}" for cfm in cfms)], lines)
 
 
 def judge(paths, csv_file=None):

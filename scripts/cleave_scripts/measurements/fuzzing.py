@@ -15,6 +15,7 @@ from cleave_scripts.results.command_line import counted
 from cleave_scripts.results.errors import AlreadyTold, ResultError
 from cleave_scripts.results.programs import ROOT, git, run_and_watch
 from cleave_scripts.results.whole_file import write_text
+from cleave_scripts.table import text
 
 TARGETS = ("csv", "manifest", "options", "scene", "problem")
 SOURCES = ROOT / "tests" / "fuzz"
@@ -42,7 +43,7 @@ def find_programs(about):
     folder = pathlib.Path(given).resolve() if given else ROOT / "build" / "fuzz" / "tests" / "fuzz"
     if given and not all(os.access(folder / f"fuzz_{name}", os.X_OK) for name in TARGETS):
         raise ResultError(f"CLEAVE_FUZZ_PROGRAMS is '{given}', which does not hold fuzz_{', fuzz_'.join(TARGETS)}")
-    say(about + ("" if given else ", up to 6 more where nothing is built"))
+    say(about + ("" if given else ", up to 7 more where nothing is built"))
     setup = [ROOT / "scripts" / "setup", "--preset", "fuzz", "--target", "fuzz_all"]
     if not given and subprocess.run(setup, check=False).returncode != 0:
         raise AlreadyTold
@@ -121,12 +122,10 @@ def page(out):
     kept = [out / f"{name}.json" for name in TARGETS]
     results = [Result(**json.loads(file.read_text(encoding="utf-8"))) for file in kept if file.exists()]
     found = sum(len(result.findings) for result in results)
+    header = ["target", "date", "commit", "minutes", "executions", "branches reached", "of the program's", "inputs kept", "findings"]
     lines = ["# The last runs of the fuzzers", "", f"`scripts/fuzz`: {counted(found, 'finding')}.", "",
-             "| target | date | commit | minutes | executions | branches reached | of the program's | inputs kept | findings |",
-             "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
-    for result in results:
-        lines.append(f"| {result.target} | {result.date} | {result.commit} | {result.minutes:.0f} | {result.executions} | "
-                     f"{result.edges} | {result.edges_in_all} | {result.inputs} | {len(result.findings)} |")
-    lines += ["", "The program of a target holds code that it cannot reach: every solver, for instance. What each target reads and what",
-              "counts as a finding: [tests/fuzz/README.md](../../tests/fuzz/README.md).", ""]
+             text.table(header, [[result.target, result.date, result.commit, f"{result.minutes:.0f}", result.executions, result.edges,
+                                  result.edges_in_all, result.inputs, len(result.findings)] for result in results]),
+             "", "The program of a target holds code that it cannot reach: every solver, for instance. What each target reads and what",
+             "counts as a finding: [tests/fuzz/README.md](../../tests/fuzz/README.md).", ""]
     return "\n".join(lines)

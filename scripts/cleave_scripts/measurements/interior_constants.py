@@ -5,6 +5,7 @@ import io
 import re
 
 from cleave_scripts.results.programs import ROOT
+from cleave_scripts.table import text
 
 NOTHING = 0.01  # a constant that changes the factorisations by less than this share, and loses no problem, buys nothing
 
@@ -88,7 +89,7 @@ def markdown(found):
              f"of one; {default.proximal} proximal, {default.above_limit} above the limit, worst residual "
              f"{default.worst_m_per_s:.1e} m/s. Proximal: the first attempt ended above the limit, and proximal steps "
              "followed; shown where the number differs.", "",
-             "| constant | value tried: factorisations (over those as it is) |", "| --- | --- |"]
-    lines += [f"| `{name}` | {'; '.join(_cell(total, default) for total in values)} |" for name, values in constants.items()]
+             text.table(["constant", "value tried: factorisations (over those as it is)"],
+                        [[f"`{name}`", "; ".join(_cell(total, default) for total in values)] for name, values in constants.items()])]
     nothing = ", ".join(f"`{name}`" for name in buying_nothing(found)) or "none"
     return "\n".join([*lines, "", f"Buys nothing here (less than {NOTHING:g} of the factorisations, and no problem): {nothing}."])

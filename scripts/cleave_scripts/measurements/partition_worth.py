@@ -6,6 +6,9 @@ thread. Where a scene names groups of bodies, parts after them are held against 
 """
 import dataclasses
 
+from cleave_scripts.results.names import base_name
+from cleave_scripts.results.rows import combination, has_parts, split_ms, total_ms
+
 KEY = ("scene", "bodies", "cfm")
 MODELLED = (2, 4, 8, 16, 32, 64)
 WORKERS = (1, *MODELLED)
@@ -39,10 +42,6 @@ class Problem:
         return min((solver for solver, count in self.best if count == workers), key=lambda solver: self.best[solver, workers].time_ms)
 
 
-def _partition(row):
-    return "-" if row["partitioner"] == "-" else f"{row['partitioner']}+{row['refiner']}"
-
-
 def _least(cells, key, cell):
     if key not in cells or cell.time_ms < cells[key].time_ms:
         cells[key] = cell
@@ -53,13 +52,12 @@ def problems(rows):
     found = {}
     for row in rows:
         best, measured, count = found.setdefault(tuple(row[name] for name in KEY), ({}, {}, int(row["rows"])))[:3]
-        split_ms = 0 if row["partitioner"] == "-" else float(row["t_pr_ms"])
         if int(row["threads"]) == 2:
-            _least(measured, row["solver"], Cell(split_ms + float(row["t_s_ms"]), _partition(row)))
+            _least(measured, row["solver"], Cell(total_ms(row), combination(row)))
             continue
-        _least(best, (row["solver"], 1), Cell(split_ms + float(row["t_s_ms"]), _partition(row)))
+        _least(best, (row["solver"], 1), Cell(total_ms(row), combination(row)))
         for workers in MODELLED:
-            _least(best, (row["solver"], workers), Cell(split_ms + float(row[f"t_s_model_p{workers}_ms"]), _partition(row)))
+            _least(best, (row["solver"], workers), Cell(split_ms(row) + float(row[f"t_s_model_p{workers}_ms"]), combination(row)))
     return sorted((Problem(key, count, best, measured) for key, (best, measured, count) in found.items()),
                   key=lambda problem: (problem.key[0], problem.rows, float(problem.key[2])))
 
@@ -73,7 +71,7 @@ class Kind:
 
 
 def _kind(row):
-    if row["partitioner"].partition("@")[0] != SEMANTIC:
+    if base_name(row["partitioner"]) != SEMANTIC:
         return FOUND
     return WHOLE if "split=whole" in row["partitioner"] else RUNS
 
@@ -82,10 +80,10 @@ def kinds(rows):
     """{(key, rows, solver): {kind: Kind}} on one thread, of the problems that name groups."""
     found = {}
     for row in rows:
-        if int(row["threads"]) != 1 or row["partitioner"] == "-":
+        if int(row["threads"]) != 1 or not has_parts(row):
             continue
         of_kind = found.setdefault((tuple(row[name] for name in KEY), int(row["rows"]), row["solver"]), {})
-        kind = Kind(Cell(float(row["t_pr_ms"]) + float(row["t_s_ms"]), _partition(row)), int(row["parts"]), int(row["interface_rows"]))
+        kind = Kind(Cell(total_ms(row), combination(row)), int(row["parts"]), int(row["interface_rows"]))
         if _kind(row) not in of_kind or kind.cell.time_ms < of_kind[_kind(row)].cell.time_ms:
             of_kind[_kind(row)] = kind
     return {key: of_kind for key, of_kind in found.items() if WHOLE in of_kind}

@@ -5,7 +5,9 @@ A solver that iterates is told to stop at LIMIT; what counts is t_pr + t_s until
 import math
 import statistics
 
+from cleave_scripts.results.names import base_name
 from cleave_scripts.results.programs import replay
+from cleave_scripts.results.rows import relative_residual, total_ms
 
 KEY = ("scene", "bodies", "cfm", "step")
 PARTITIONERS = ("mindp", "maxdp", "bfs", "mr", "mix", "multilevel", "geometric", "random")
@@ -24,16 +26,8 @@ def partition_rows(program, scratch, files, most_sweeps, threads):
                       "--refiner", ",".join(REFINERS), "--threads", threads, "--repeats", 3)
 
 
-def _is_within(row):
-    return float(row["residual_m_per_s"]) <= LIMIT * max(1.0, float(row["largest_free_velocity_m_per_s"]))
-
-
 def _cost(row, number):
-    return number(row) if _is_within(row) else math.inf
-
-
-def _total_ms(row):
-    return float(row["t_pr_ms"]) + float(row["t_s_ms"])
+    return number(row) if relative_residual(row) <= LIMIT else math.inf
 
 
 def _ratios(rows, number):
@@ -53,7 +47,7 @@ def _ratios(rows, number):
 
 
 def solver_name(row):
-    return row["solver"].partition("@")[0]
+    return base_name(row["solver"])
 
 
 def compare(rows):
@@ -61,7 +55,7 @@ def compare(rows):
     found = {}
     for solver in dict.fromkeys(map(solver_name, rows)):
         mine = [row for row in rows if solver_name(row) == solver]
-        times = _ratios(mine, _total_ms)
+        times = _ratios(mine, total_ms)
         sweeps = _ratios(mine, lambda row: float(row["iterations"])) if solver in ITERATIVE else {}
         found[solver] = {parts: (ratio, sweeps.get(parts, math.nan)) for parts, ratio in times.items()}
     return found

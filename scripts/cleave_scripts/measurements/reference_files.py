@@ -37,13 +37,22 @@ def _write_checksums(results):
         write_text(manifest.parent / "checksums", "".join(lines))
 
 
+def _check_complete(stage, directory):
+    """A stage that is kept may have lost files since it was done."""
+    missing = [f"{file} below {runs}" for file in RUN_FILES for runs, _ in stage.runs
+               if not any(name.startswith(f"{runs}/") for name, _ in run_files_below(directory, file))]
+    missing += [pattern for pattern, _ in stage.files if not any(directory.glob(pattern))]
+    if missing:
+        raise ResultError(f"stage {stage.name}: {directory} has no {' and no '.join(missing)}; nothing is stored. Take its line out "
+                          "of out/reference/stages.jsonl and give the command again")
+
+
 def publish(root, records):
     """results/ holds then what the stages made, and of older results nothing."""
     out, results = root / "out" / "reference", root / "results"
+    for stage in STAGES:
+        _check_complete(stage, out / stage.place)
     found = {stage: list(_sources(stage, out / stage.place)) for stage in STAGES}
-    for stage, files in found.items():
-        if (stage.runs or stage.files) and not files:
-            raise ResultError(f"stage {stage.name} left nothing in {out / stage.place}")
     for path in sorted(results.rglob("*"), reverse=True):
         if APART in path.relative_to(results).parts:
             continue

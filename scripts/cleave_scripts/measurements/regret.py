@@ -7,8 +7,9 @@ round, of which one may be slower than another throughout: every replay has the 
 same replay, round and step, and multiplied by its median over replays and rounds.
 """
 import dataclasses
-import math
 import statistics
+
+from cleave_scripts.results.rows import combination, has_parts, total_ms
 
 AUTO, BASELINE = "auto+none", "mindp+none"
 WHOLE = "pivot:monolithic"
@@ -37,18 +38,9 @@ class Regret:
         return self.regret <= MOST_REGRET and self.auto_ms <= self.baseline_ms
 
 
-def cell_of(row):
-    return f"{row['partitioner']}+{row['refiner']}"
-
-
-def _total_ms(row):
-    t_pr_ms = float(row["t_pr_ms"])
-    return float(row["t_s_ms"]) + (0 if math.isnan(t_pr_ms) else t_pr_ms)  # whoever ignores parts has none
-
-
 def _paces(rows):
     """{(replay, round, step): how much slower than usual WHOLE was there}"""
-    whole = {(row["replay"], row["round"], row["step"]): _total_ms(row) for row in rows if row["solver"] == WHOLE}
+    whole = {(row["replay"], row["round"], row["step"]): total_ms(row) for row in rows if row["solver"] == WHOLE}
     usual = {}
     for (_, _, step), time_ms in whole.items():
         usual.setdefault(step, []).append(time_ms)
@@ -61,13 +53,13 @@ def _times(rows, name, paces=None):
     for row in rows:
         of_cell = lists.setdefault(name(row), ({}, {}))
         pace = paces[row["replay"], row["round"], row["step"]] if paces else 1
-        of_cell[int(row["round"]) % 2].setdefault(row["step"], []).append(_total_ms(row) / pace)
+        of_cell[int(row["round"]) % 2].setdefault(row["step"], []).append(total_ms(row) / pace)
     return {cell: [statistics.fmean(map(statistics.median, steps.values())) for steps in of_cell] for cell, of_cell in lists.items()}
 
 
 def _cell_and_kernel(row):
     kernel = row["solver"].partition(":")[2]
-    return kernel if row["partitioner"] == "-" else f"{cell_of(row)}/{kernel}"
+    return f"{combination(row)}/{kernel}" if has_parts(row) else kernel
 
 
 def _best(times, cells):
@@ -78,11 +70,11 @@ def _regret(scene, solver, rows):
     """rows: of the scene."""
     chooses_kernel = solver == ANY_KERNEL
     paces = _paces(rows) if chooses_kernel else None
-    auto = [row for row in rows if row["solver"] == solver and cell_of(row) == AUTO]
+    auto = [row for row in rows if row["solver"] == solver and combination(row) == AUTO]
     grid = _times([row for row in rows if row["partitioner"] != "auto" and (chooses_kernel or row["solver"] == solver)],
-                  _cell_and_kernel if chooses_kernel else cell_of, paces)
+                  _cell_and_kernel if chooses_kernel else combination, paces)
     best, baseline = _best(grid, grid), _best(grid, [cell for cell in grid if cell.split("/")[0] == BASELINE])
-    (auto_times,) = _times(auto, cell_of, paces).values()
+    (auto_times,) = _times(auto, combination, paces).values()
     choices = dict.fromkeys(row["auto_choice"] for row in auto)
     return Regret(scene, solver, best, grid[best][0], grid[baseline][0], auto_times[0], list(choices))
 
@@ -93,4 +85,4 @@ def regrets(rows):
     for row in rows:
         scenes.setdefault(row["scene"], []).append(row)
     return [_regret(scene, solver, of_scene) for scene, of_scene in scenes.items()
-            for solver in dict.fromkeys(row["solver"] for row in of_scene if cell_of(row) == AUTO)]
+            for solver in dict.fromkeys(row["solver"] for row in of_scene if combination(row) == AUTO)]

@@ -1,6 +1,8 @@
 """The ratios of scripts/benchmark_solvers, from what the benchmark program wrote."""
 import statistics
 
+from cleave_scripts.table import text
+
 # (bodies, cfm): sweeps of projected Gauss-Seidel that an exact solve is held against.
 SWEEPS = {(200, "1e-5"): 100, (200, "1e-8"): 300, (600, "1e-5"): 300, (800, "1e-5"): 300, (800, "1e-8"): 700}
 PILES = tuple(SWEEPS)
@@ -41,5 +43,4 @@ def _line(rows, bodies, cfm):
 
 def markdown(benchmarks):
     rows = medians(benchmarks)
-    lines = [HEADER, ["---"] * len(HEADER), *(_line(rows, *pile) for pile in PILES)]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+    return text.table(HEADER, [_line(rows, *pile) for pile in PILES])

@@ -5,6 +5,7 @@ import math
 import textwrap
 
 from cleave_scripts.results.command_line import counted
+from cleave_scripts.table import text
 from cleave_scripts.table.cell_texts import (CELL_HELP, WAITED, across, format_number, format_ratio, pair,
                                              scene_notes)
 from cleave_scripts.table.latex import format_latex
@@ -90,10 +91,7 @@ def format_csv(tables, header):
 
 def format_markdown(tables, header):
     """Combinations down, scenes across: ours t_s + t_pr (paper's) and the ratio; the lowest total in bold."""
-    lines = [
-        "| | " + " | ".join(f"{table.title}, {counted(table.steps, 'step')}" for table in tables) + " |",
-        "|---|" + "---|" * len(tables)
-    ]
+    lines = []
     for cells in across(tables):
         entries = []
         for cell in cells:
@@ -101,9 +99,10 @@ def format_markdown(tables, header):
             paper = pair(cell.paper, 1, 1)
             entries.append(f"{_bold(ours, cell.ours_lowest)} (paper {_bold(paper, cell.paper_lowest)}), "
                            f"×{format_ratio((cell.ours / cell.paper)[2])}")
-        lines.append(f"| {cells[0].partitioner} {cells[0].refiner} | " + " | ".join(entries) + " |")
+        lines.append([f"{cells[0].partitioner} {cells[0].refiner}", *entries])
+    titles = [f"{table.title}, {counted(table.steps, 'step')}" for table in tables]
     help_line = CELL_HELP + " Bold: lowest total of the scene."
-    return "\n".join([*lines, "", help_line, *header, *scene_notes(tables)]) + "\n"
+    return "\n".join([text.table(["", *titles], lines), "", help_line, *header, *scene_notes(tables)]) + "\n"
 
 
 def _bold(text, bold):

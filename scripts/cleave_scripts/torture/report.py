@@ -4,6 +4,7 @@ import os
 import platform
 
 from cleave_scripts.results.whole_file import write_text
+from cleave_scripts.table import text
 from cleave_scripts.torture.registry import KINDS
 from cleave_scripts.torture.tally import COUNTS
 
@@ -27,14 +28,13 @@ def as_json(tally, frame):
 
 def as_page(tally, frame):
     lines = ["# Hostile trials", "", *(f"- {name.replace('_', ' ')}: {value}" for name, value in frame.items()), "",
-             "| kind | " + " | ".join(COUNTS[name] for name in TABLE) + " |", "| --- |" + " --- |" * len(TABLE)]
-    for kind, counts in tally.counts.items():
-        lines.append(f"| {kind} | " + " | ".join(str(counts[name]) for name in TABLE) + " |")
-    lines += [f"| {kind} | NOT RUN: {why} |" + " |" * (len(TABLE) - 1) for kind, why in tally.not_run.items()]
-    lines += ["| all | " + " | ".join(str(tally.total(name)) for name in TABLE) + " |", ""]
+             text.table(["kind", *(COUNTS[name] for name in TABLE)],
+                        [*([kind, *(counts[name] for name in TABLE)] for kind, counts in tally.counts.items()),
+                         *([kind, f"NOT RUN: {why}", *[""] * (len(TABLE) - 1)] for kind, why in tally.not_run.items()),
+                         ["all", *map(tally.total, TABLE)]]), ""]
     lines += [f"- `{kind}`: {ABOUT[kind]}. {_rest(counts)}" for kind, counts in tally.counts.items()]
-    found = [f"| {kind} | {what} | {number} |" for kind, all in tally.found.items() for what, number in all.most_common()]
-    lines += ["", *(["| kind | finding | times |", "| --- | --- | --- |", *found] if found else ["No findings."])]
+    found = [[kind, what, number] for kind, all in tally.found.items() for what, number in all.most_common()]
+    lines += ["", text.table(["kind", "finding", "times"], found) if found else "No findings."]
     return "\n".join(lines) + "\n"
 
 

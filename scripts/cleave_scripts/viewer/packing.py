@@ -18,7 +18,7 @@ FIELD_OF_VIEW = 19  # degrees, from the lower to the upper edge
 
 
 def pack(motion, stride):
-    """A recording as JSON: a description and all numbers, compressed. See viewer/source/recording.js."""
+    """A recording as JSON: a description and all numbers, compressed. See viewer/web/source/recording.js."""
     measured = motion.measured
     kept = numpy.arange(len(measured.step))[::-1][::stride][::-1]  # the last one always
     frames = numpy.unique(
