@@ -133,6 +133,19 @@ void BodyGraph::add_body(double mass_kg, int fixed_rows) {
   first_.push_back(static_cast<int>(neighbour_.size()));
 }
 
+void BodyGraph::add_half_edge(int neighbour, const BodyGraph& from, int half_edge) {
+  neighbour_.push_back(neighbour);
+  constraints_.push_back(from.constraints_[half_edge]);
+  rows_.push_back(from.rows_[half_edge]);
+}
+
+void BodyGraph::add_body(const BodyGraph& from, int body) {
+  add_body(from.mass_kg_[body], from.fixed_rows_[body]);
+  if (from.has_positions())
+    for (const int axis : {0, 1, 2}) position_m_.push_back(from.position_m(body, axis));
+  if (from.has_groups()) group_.push_back(from.group(body));
+}
+
 // Neighbours stay ascending, because bodies keep their order within a set.
 std::vector<BodyGraph> BodyGraph::induced(std::span<const int> set_of_body, int sets) const {
   const int n = body_count();
@@ -150,14 +163,9 @@ std::vector<BodyGraph> BodyGraph::induced(std::span<const int> set_of_body, int 
     BodyGraph& graph = graphs[set_of_body[i]];
     for (int k = first_[i]; k < first_[i + 1]; ++k) {
       if (set_of_body[neighbour_[k]] != set_of_body[i]) continue;
-      graph.neighbour_.push_back(index[neighbour_[k]]);
-      graph.constraints_.push_back(constraints_[k]);
-      graph.rows_.push_back(rows_[k]);
+      graph.add_half_edge(index[neighbour_[k]], *this, k);
     }
-    graph.add_body(mass_kg_[i], fixed_rows_[i]);
-    if (has_positions())
-      for (const int axis : {0, 1, 2}) graph.position_m_.push_back(position_m(i, axis));
-    if (has_groups()) graph.group_.push_back(group(i));
+    graph.add_body(*this, i);
   }
   return graphs;
 }
@@ -174,15 +182,8 @@ BodyGraph BodyGraph::renumbered(std::span<const int> number_of_body) const {
     for (int k = first_[body]; k < first_[body + 1]; ++k)
       half_edges.emplace_back(number_of_body[neighbour_[k]], k);
     std::ranges::sort(half_edges);
-    for (const auto& [neighbour, k] : half_edges) {
-      graph.neighbour_.push_back(neighbour);
-      graph.constraints_.push_back(constraints_[k]);
-      graph.rows_.push_back(rows_[k]);
-    }
-    graph.add_body(mass_kg_[body], fixed_rows_[body]);
-    if (has_positions())
-      for (const int axis : {0, 1, 2}) graph.position_m_.push_back(position_m(body, axis));
-    if (has_groups()) graph.group_.push_back(group(body));
+    for (const auto& [neighbour, k] : half_edges) graph.add_half_edge(neighbour, *this, k);
+    graph.add_body(*this, body);
   }
   return graph;
 }

@@ -83,6 +83,9 @@ class BodyGraph {
 
  private:
   void add_body(double mass_kg, int fixed_rows);
+  // As they are in another graph: a half edge, of the body that is added next, to a body of this one; a body after its half edges.
+  void add_half_edge(int neighbour, const BodyGraph& from, int half_edge);
+  void add_body(const BodyGraph& from, int body);
 
   std::vector<double> mass_kg_;   // (n)
   std::vector<int> fixed_rows_;   // (n)

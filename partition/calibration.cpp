@@ -214,6 +214,12 @@ std::string read_calibration(const std::string& option, const std::string& text)
   return known().add(parse_calibration(option + ": " + text, whole_text(option, text))).fingerprint;
 }
 
+bool is_known_calibration(const std::string& fingerprint) {
+  if (fingerprint == shipped().fingerprint) return true;
+  const std::scoped_lock lock(known().mutex);
+  return known().calibrations.contains(fingerprint);
+}
+
 const Calibration& known_calibration(const std::string& fingerprint) {
   if (fingerprint == shipped().fingerprint) return shipped();
   const std::scoped_lock lock(known().mutex);

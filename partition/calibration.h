@@ -41,6 +41,7 @@ std::string read_calibration(const std::string& option, const std::string& text)
 
 // Throws std::invalid_argument for a fingerprint that nobody has read.
 const Calibration& known_calibration(const std::string& fingerprint);
+bool is_known_calibration(const std::string& fingerprint);
 
 // What the parameters calibration, cost-kernel and cost-threads say together: one kernel, or those of cost_kernel_names
 // where cost-kernel is `any`. Throws as known_calibration and Calibration::of.

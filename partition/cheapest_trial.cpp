@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "harness/base/stop.h"
+#include "harness/base/stop_signals.h"
 #include "partition/calibration.h"
 #include "partition/partitioner.h"
 #include "partition/registry.h"
@@ -47,9 +49,10 @@ class CheapestTrial final : public Partitioner {
     double least_ms = std::numeric_limits<double>::infinity();
     Partition cheapest;
     for (const auto& trial : trials_) {
+      check_stop(&stop_requested());
       Partition parts = trial->run(graph);
       const double ms = modelled_ms(counter.count(parts), cost_);
-      if (ms >= least_ms) continue;
+      if (cheapest.part_count > 0 && ms >= least_ms) continue;
       least_ms = ms;
       cheapest = std::move(parts);
     }

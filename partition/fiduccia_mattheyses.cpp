@@ -24,17 +24,15 @@ class FiducciaMattheyses final : public Refiner {
         bounded_(!settings.flag("as-printed")) {}
 
  private:
-  RefineSummary do_run(const BodyGraph& graph, int max_bodies, Partition& partition) const override {
+  void do_run(const BodyGraph& graph, int max_bodies, Partition& partition,
+              RefineSummary& summary) const override {
     const int most = bounded_ ? most_grown_bodies(max_bodies, max_growth_) : graph.body_count();
-    const long cut_before = cut_weight(graph, partition.part_of_body, unit());
-    RefineSummary summary{0, cut_before, cut_before};
     MoveSearch search(graph, unit(), most, MoveKind::improving, partition);
     while (const std::optional<Exchange> move = search.find()) {
       search.make(*move);
       ++summary.exchanges;
       summary.cut_after -= move->gain;
     }
-    return summary;
   }
 
   double max_growth_;

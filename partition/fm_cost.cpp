@@ -24,13 +24,11 @@ class FmCost final : public Refiner {
         cost_(kernel_cost(settings)) {}
 
  private:
-  RefineSummary do_run(const BodyGraph& graph, int max_bodies, Partition& partition) const override {
-    const long cut_before = cut_weight(graph, partition.part_of_body, unit());
-    RefineSummary summary{0, cut_before, cut_before};
+  void do_run(const BodyGraph& graph, int max_bodies, Partition& partition,
+              RefineSummary& summary) const override {
     PartitionCost time(graph, cost_, partition);
     MoveSearch search(graph, unit(), most_grown_bodies(max_bodies, max_growth_), MoveKind::all, partition);
     while (pass(search, time, summary)) search.restart();
-    return summary;
   }
 
   // Whether it made a move.

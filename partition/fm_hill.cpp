@@ -20,9 +20,8 @@ class FmHill final : public Refiner {
         patience_(settings.integer("patience")) {}
 
  private:
-  RefineSummary do_run(const BodyGraph& graph, int max_bodies, Partition& partition) const override {
-    const long cut_before = cut_weight(graph, partition.part_of_body, unit());
-    RefineSummary summary{0, cut_before, cut_before};
+  void do_run(const BodyGraph& graph, int max_bodies, Partition& partition,
+              RefineSummary& summary) const override {
     MoveSearch search(graph, unit(), most_grown_bodies(max_bodies, max_growth_), MoveKind::all, partition);
     HillClimb climb(search, partition, patience_);
     while (const long fall = climb.run()) {
@@ -30,7 +29,6 @@ class FmHill final : public Refiner {
       summary.exchanges += static_cast<int>(climb.kept().size());
       search.restart();
     }
-    return summary;
   }
 
   double max_growth_;

@@ -1,4 +1,4 @@
-// The one growing loop of all partitioners (Liu & Andrews 2022, section 3.1).
+// The one growing loop of the paper's partitioners (Liu & Andrews 2022, section 3.1).
 //
 // G0 = the bodies that are in no part yet, at first all. While G0 is not empty: open a part with a seed from
 // G0, then add one body of G0 adjacent to the part at a time, until the part has max_bodies bodies or no such
@@ -6,7 +6,7 @@
 // the outer condition of its Algorithm 1 as size(G0) < n_max, which would stop before anything is grown; it
 // is read as "G0 is not empty".
 //
-// A partitioner is a chooser: it names the seed and the next body. A body leaves G0 the moment it joins the
+// Such a partitioner is a chooser: it names the seed and the next body. A body leaves G0 the moment it joins the
 // open part.
 #pragma once
 

@@ -20,6 +20,8 @@
 #include <utility>
 
 #include "harness/base/parameter.h"
+#include "harness/base/stop.h"
+#include "harness/base/stop_signals.h"
 #include "partition/contraction.h"
 #include "partition/karger_stein.h"
 #include "partition/parameters.h"
@@ -41,6 +43,7 @@ class Bisections {
 
   Partition run(Dice& dice) {
     while (!open_.empty()) {
+      check_stop(&stop_requested());
       const Set set = std::move(open_.back());
       open_.pop_back();
       const int n = set.graph.body_count();
@@ -93,6 +96,7 @@ class Karger final : public Partitioner {
     std::pair<long, int> best_is;  // cut, parts
     const std::vector<WeightedEdge> edges = edges_of(graph, unit_);
     for (int trial = 0; trial < trials_; ++trial) {
+      check_stop(&stop_requested());  // there may be millions
       Partition found =
           bisects_ ? Bisections(graph, unit_, max_bodies_).run(dice) : contracted(graph, edges, dice);
       const std::pair found_is{cut_weight(graph, found.part_of_body, unit_), found.part_count};

@@ -68,8 +68,7 @@ class SwapSearch {
     search_changed_pairs();
   }
 
-  RefineSummary run(long cut_before) {
-    RefineSummary summary{0, cut_before, cut_before};
+  void run(RefineSummary& summary) {
     while (!swaps_.empty()) {
       const Exchange swap = swaps_.pop();
       if (!(swap == pairs_[swap.tag].best)) continue;  // stale
@@ -77,7 +76,6 @@ class SwapSearch {
       ++summary.exchanges;
       summary.cut_after -= swap.gain;
     }
-    return summary;
   }
 
  private:
@@ -188,9 +186,8 @@ class KernighanLin final : public Refiner {
   explicit KernighanLin(const Settings& settings) : Refiner(refining_unit(settings)) {}
 
  private:
-  RefineSummary do_run(const BodyGraph& graph, int, Partition& partition) const override {
-    const long cut_before = cut_weight(graph, partition.part_of_body, unit());
-    return SwapSearch(graph, unit(), partition).run(cut_before);
+  void do_run(const BodyGraph& graph, int, Partition& partition, RefineSummary& summary) const override {
+    SwapSearch(graph, unit(), partition).run(summary);
   }
 };
 

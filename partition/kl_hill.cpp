@@ -108,10 +108,12 @@ class PairPasses {
       if (any && gain_[i] + gain_[theirs.front()] < best.gain) break;
       for (const int j : theirs) {
         if (any && gain_[i] + gain_[j] < best.gain) break;
-        const Exchange swap{gain_[i] + gain_[j] - 2 * edge_weight(graph_, i, j, unit_), std::min(i, j),
-                            std::max(i, j), 0};
+        const int shared = edge_weight(graph_, i, j, unit_);
+        const Exchange swap{gain_[i] + gain_[j] - 2 * shared, std::min(i, j), std::max(i, j), 0};
         if (!any || best < swap) best = swap;
         any = true;
+        // The rest have no greater D, and a higher index where it is equal: they lose against this one.
+        if (shared == 0) break;
       }
     }
     return best;
@@ -129,9 +131,7 @@ class KlHill final : public Refiner {
   explicit KlHill(const Settings& settings) : Refiner(settings.word<EdgeWeight>(parameters::edge_weight())) {}
 
  private:
-  RefineSummary do_run(const BodyGraph& graph, int, Partition& partition) const override {
-    const long cut_before = cut_weight(graph, partition.part_of_body, unit());
-    RefineSummary summary{0, cut_before, cut_before};
+  void do_run(const BodyGraph& graph, int, Partition& partition, RefineSummary& summary) const override {
     PairPasses passes(graph, unit(), partition);
     passes.list_bodies(partition.part_count);
     long lowered = 1;
@@ -140,7 +140,6 @@ class KlHill final : public Refiner {
       for (const auto& [a, b] : adjacent_parts(graph, partition)) lowered += passes.run(a, b, summary);
       summary.cut_after -= lowered;
     }
-    return summary;
   }
 
   static std::set<std::pair<int, int>> adjacent_parts(const BodyGraph& graph, const Partition& partition) {

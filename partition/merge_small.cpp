@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "harness/base/ceil_div.h"
 #include "partition/dissolve.h"
 #include "partition/leftovers.h"
 #include "partition/local_climbs.h"
@@ -38,7 +39,7 @@ long mend(const BodyGraph& graph, int max_bodies, Partition& partition) {
   const int parts = wanted_parts(graph.body_count(), max_bodies);
   const int most_bodies = most_merged_bodies(max_bodies);
   const LocalClimbs climbs{.most_bodies = most_bodies, .patience = kPatience, .most_rounds = kMostRounds};
-  join_leftovers(graph, {parts, max_bodies / 2 + max_bodies % 2, most_bodies}, partition);
+  join_leftovers(graph, {parts, ceil_div(max_bodies, 2), most_bodies}, partition);
   Partition fewer = partition;
   long gains_counted = dissolve_smallest(graph, parts, most_bodies, fewer);
   gains_counted += climb_locally(graph, climbs, fewer);

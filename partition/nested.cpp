@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "harness/base/ceil_div.h"
 #include "partition/leftovers.h"
 #include "partition/refuse.h"
 #include "partition/registry.h"
@@ -54,7 +55,7 @@ class Recursion {
  private:
   void take(const BodyGraph& graph, std::span<const int> bodies, int parent, bool may_split) {
     if (may_split) {
-      const int most_bodies = graph.body_count() / arity_ + (graph.body_count() % arity_ > 0);
+      const int most_bodies = ceil_div(graph.body_count(), arity_);
       const Partition parts = split_set_(graph, most_bodies);
       if (parts.part_count >= 2) {
         nodes_.push_back({parent, false});
@@ -136,7 +137,7 @@ Partition SetSplitter::grow(const BodyGraph& set, int most_bodies) const {
   if (!promise.at_most_max_bodies && !promise.at_most_grown_bodies) return parts;
   const int most_joined =
       most_bodies <= max_bodies_ ? max_bodies_ : most_grown_bodies(most_bodies, kJoinedGrowth);
-  join_leftovers(set, {arity_, most_bodies / 2 + most_bodies % 2, most_joined}, parts);
+  join_leftovers(set, {arity_, ceil_div(most_bodies, 2), most_joined}, parts);
   return parts;
 }
 

@@ -11,10 +11,7 @@ class None final : public Refiner {
   None() : Refiner(EdgeWeight::rows) {}
 
  private:
-  RefineSummary do_run(const BodyGraph& graph, int, Partition& partition) const override {
-    const long cut = cut_weight(graph, partition.part_of_body, unit());
-    return {0, cut, cut};
-  }
+  void do_run(const BodyGraph&, int, Partition&, RefineSummary&) const override {}
 };
 
 }  // namespace

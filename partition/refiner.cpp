@@ -40,7 +40,9 @@ void check(const BodyGraph& graph, const Partition& partition) {
 RefineSummary Refiner::run(const BodyGraph& graph, int max_bodies, Partition& partition) const {
   if (max_bodies < 1) refuse("max_bodies", max_bodies, ">= 1");
   check(graph, partition);
-  RefineSummary summary = do_run(graph, max_bodies, partition);
+  const long cut_before = cut_weight(graph, partition.part_of_body, unit_);
+  RefineSummary summary{0, cut_before, cut_before};
+  do_run(graph, max_bodies, partition, summary);
   assert(is_valid(graph, partition, unit_, summary));
   return summary;
 }

@@ -32,7 +32,9 @@ class Refiner {
   EdgeWeight unit() const { return unit_; }
 
  private:
-  virtual RefineSummary do_run(const BodyGraph& graph, int max_bodies, Partition& partition) const = 0;
+  // Counts its exchanges and what they take off the cut in a summary of none.
+  virtual void do_run(const BodyGraph& graph, int max_bodies, Partition& partition,
+                      RefineSummary& summary) const = 0;
 
   EdgeWeight unit_;
 };

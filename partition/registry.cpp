@@ -66,9 +66,9 @@ constexpr PartsPromise kClosedEarly{.contiguous = true, .at_most_max_bodies = tr
 
 // The row of that name. option: what an error begins with.
 template <class Entry>
-const Entry& find_row(std::span<const Entry> table, const std::string& option, const std::string& name) {
+const Entry& checked_row(std::span<const Entry> table, const std::string& option, const std::string& name) {
   check_name(option, name, names_of(table));
-  return *std::ranges::find(table, name, [](const Entry& entry) { return std::string(entry.name); });
+  return *find_row(table, name);
 }
 
 // Which other row of the table has a parameter.
@@ -77,14 +77,14 @@ ParameterOwners owners_in(std::span<const Entry> table) {
   return [table](const std::string& parameter) {
     std::vector<std::string> owners;
     for (const Entry& entry : table)
-      if (std::ranges::count(entry.parameters, parameter, &Parameter::name) > 0) owners.push_back(entry.name);
+      if (has_parameter(entry, parameter)) owners.push_back(entry.name);
     return joined(owners);
   };
 }
 
 template <class Entry>
 Algorithm read_row(std::span<const Entry> table, const std::string& option, const std::string& text) {
-  const Entry& entry = find_row(table, option, algorithm_name(text));
+  const Entry& entry = checked_row(table, option, algorithm_name(text));
   return read_algorithm(option, text, entry.parameters, {}, owners_in(table));
 }
 
@@ -160,7 +160,8 @@ std::span<const PartitionerEntry> partitioners() {
        {.at_most_grown_bodies = true},
        make_multilevel_cost},
       {{"auto",
-        "the partitioner, refiner and size of parts of least modelled time, chosen once a scene",
+        "the partitioner, refiner and size of parts of least modelled time, chosen once for graphs of about "
+        "a size",
         "partition/README.md",
         {calibration(), cost_kernel(), cost_threads()}},
        {},
@@ -285,7 +286,7 @@ std::span<const RefinerEntry> refiners() {
 }
 
 const PartitionerEntry& partitioner_row(const std::string& name) {
-  return find_row(partitioners(), "partitioner", name);
+  return checked_row(partitioners(), "partitioner", name);
 }
 
 std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm) {
@@ -307,7 +308,7 @@ std::unique_ptr<Partitioner> make_partitioner(const Algorithm& algorithm) {
 }
 
 std::unique_ptr<Refiner> make_refiner(const Algorithm& algorithm) {
-  return find_row(refiners(), "refiner", algorithm.name).make(algorithm.settings);
+  return checked_row(refiners(), "refiner", algorithm.name).make(algorithm.settings);
 }
 
 Algorithm read_partitioner(const std::string& text) { return read_row(partitioners(), "partitioner", text); }

@@ -114,8 +114,13 @@ class RockPile : public Scene {
 }  // namespace
 
 Parameter pile_bodies(const char* default_bodies) {
-  return {"bodies", Parameter::Kind::integer, default_bodies, {1, kMostPileBodies}, {},
-          "",       "number of rocks"};
+  return {"bodies",
+          Parameter::Kind::integer,
+          default_bodies,
+          {1, kMostPileBodies},
+          {},
+          "",
+          "number of rocks, of silo: of boxes"};
 }
 
 Parameter pile_mass(const char* default_mass_kg) {

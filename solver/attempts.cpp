@@ -35,11 +35,9 @@ Strategy& Attempts::strategy(std::string_view name) {
   for (Link& link : links_) {
     if (link.name == name) return *link.strategy;
   }
-  for (const StrategyRow& row : strategy_table()) {
-    if (row.name == name && row.make != nullptr) {
-      links_.push_back({row.name, row.make(settings_)});
-      return *links_.back().strategy;
-    }
+  if (const StrategyRow* row = find_row(strategy_table(), name); row != nullptr && row->make != nullptr) {
+    links_.push_back({row->name, row->make(settings_)});
+    return *links_.back().strategy;
   }
   throw std::logic_error("no strategy of this name: " + std::string(name));
 }
@@ -83,7 +81,7 @@ bool Attempts::run_proximal(SolveState& state) {
     stalled = residual < 0.9 * proximal_best_.residual ? 0 : stalled + 1;
     proximal_best_.offer(state);
     ++state.summary->refinements;
-    state.refine_free(tolerance, SolveState::kSearchRefinements, false);
+    state.refine_free(tolerance, SolveState::kSearchRefinements, SolveState::Refining::search);
     if (state.find_violations(tolerance) == 0 || state.settle(tolerance)) continue;
     state.begin(*state.step, *state.kernel, *state.summary, proximal_best_.impulse);
     if (!run_chain(state, proximal_best_.impulse)) break;

@@ -66,7 +66,6 @@ void BlockMatrix::count(MemoryCount& memory) const {
                    entry_first_, late_places_, late_branch_, late_first_, late_slots_, group_branch_,
                    group_order_, edges_);
   memory.add<double>(36, late_places_.size());
-  memory.add<double>(1, step_->row_count());
   memory.add<char>(late_places_.size());
 }
 
@@ -75,7 +74,6 @@ void BlockMatrix::allocate() {
   free_if_short(late_blocks_, 36 * late_places_.size());
   late_blocks_.resize(36 * late_places_.size());
   late_any_.resize(late_places_.size());
-  weights_.resize(step_->row_count());
 }
 
 bool BlockMatrix::rebind(const PreparedStep& step, std::span<const int> local_of_body,
@@ -193,13 +191,14 @@ void BlockMatrix::assemble(const WeightedRows& rows, int branch) {
   }
 }
 
-void BlockMatrix::take_weights(std::span<const double> d, const Chunk& groups, std::span<char> changed) {
+void BlockMatrix::take_weights(std::span<const double> d, const Chunk& groups, std::span<double> kept,
+                               std::span<char> changed) const {
   for (int g = groups.first; g < groups.last; ++g) {
     const RowGroup& group = step_->groups()[g];
     bool any = false;
     for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
-      any |= weights_[r] != d[r];
-      weights_[r] = d[r];
+      any |= kept[r] != d[r];
+      kept[r] = d[r];
     }
     if (any) std::atomic_ref(changed[group_branch_[g]]).store(1, std::memory_order_relaxed);
   }

@@ -46,9 +46,10 @@ class BlockMatrix {
 
   // rows: of the whole problem, with their D.
   void assemble(const WeightedRows& rows, int branch);
-  // Of a whole step: keeps d (m) of the rows of these groups and sets changed[branch], of the branch that assembles it, where
+  // Of a whole step: d (m) of the rows of these groups into `kept`; sets changed[branch], of the branch that assembles it, where
   // one is another than was kept before.
-  void take_weights(std::span<const double> d, const Chunk& groups, std::span<char> changed);
+  void take_weights(std::span<const double> d, const Chunk& groups, std::span<double> kept,
+                    std::span<char> changed) const;
   // After assembly of this branch and factorisation of the child branches. False when a pivot is not positive.
   bool factor(int branch);
   // The same of a branch that is one supernode, in pieces; this one begins a strip of columns of its panel, the others are
@@ -96,7 +97,6 @@ class BlockMatrix {
   std::vector<int> group_order_;     // scratch: their places by branch
   std::vector<double> late_blocks_;  // (slots, 6, 6)
   std::vector<char> late_any_;
-  std::vector<double> weights_;  // (m)
   std::vector<std::pair<int, int>> edges_;
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "harness/base/value_spans.h"
 #include "solver/attempts.h"
 #include "solver/carried_factor.h"
 #include "solver/kept_analysis.h"
@@ -151,9 +152,8 @@ void DirectSolver::hand_over(Solution& solution) {
 }
 
 void DirectSolver::describe_failure(const Solution& solution, SolveSummary& summary) {
-  const bool is_finite = std::ranges::all_of(solution.velocity, [](double v) { return std::isfinite(v); });
   summary.status = SolveStatus::not_converged;
-  if (!is_finite) summary.status = SolveStatus::diverged;
+  if (!all_finite(solution.velocity)) summary.status = SolveStatus::diverged;
   summary.message = "strategy " + summary.strategy + " stopped above the limit" +
                     rounding_note(step_, state_.impulse, state_.residual());
 }
@@ -175,11 +175,10 @@ void DirectSolver::count_work(SolveSummary& summary) const {
 std::unique_ptr<StepSolver> make_direct_solver(std::string_view strategy, std::string_view kernel,
                                                const SolveOptions& options, const Settings& settings,
                                                std::unique_ptr<Strategy> own) {
-  const auto name_of = [](const AlgorithmEntry& row) { return std::string_view(row.name); };
-  const auto strategy_row = std::ranges::find(strategy_table(), strategy, name_of);
-  const auto kernel_row = std::ranges::find(kernel_table(), kernel, name_of);
-  if (strategy_row == strategy_table().end() || kernel_row == kernel_table().end()) return nullptr;
-  if (!runs_on(*strategy_row, *kernel_row)) return nullptr;
+  const StrategyRow* strategy_row = find_row(strategy_table(), strategy);
+  const KernelRow* kernel_row = find_row(kernel_table(), kernel);
+  if (strategy_row == nullptr || kernel_row == nullptr || !runs_on(*strategy_row, *kernel_row))
+    return nullptr;
   return std::make_unique<DirectSolver>(strategy_row->name, *kernel_row, options, settings, std::move(own));
 }
 

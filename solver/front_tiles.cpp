@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "harness/base/ceil_div.h"
 #include "solver/linear/dense_block.h"
 
 namespace cleave {
@@ -11,7 +12,7 @@ namespace {
 // costs to hand them out, nor so thick that its tiles do not fit in a core's cache.
 constexpr int kStrips = 12, kLeastStrip = 8, kMostStrip = 16;
 
-int strips_of(int blocks, int strip) { return (blocks + strip - 1) / strip; }
+int strips_of(int blocks, int strip) { return ceil_div(blocks, strip); }
 
 }  // namespace
 

@@ -9,9 +9,9 @@
 #include <algorithm>
 #include <span>
 
+#include "harness/base/stop.h"
 #include "solver/group_products.h"
 #include "solver/prepared_step.h"
-#include "solver/stop.h"
 
 namespace cleave {
 

@@ -14,9 +14,9 @@
 #include <span>
 #include <vector>
 
+#include "harness/base/stop.h"
 #include "solver/memory_count.h"
 #include "solver/stage_clock.h"
-#include "solver/stop.h"
 #include "solver/worker_team.h"
 
 namespace cleave {

@@ -1,6 +1,7 @@
 #include "solver/problem_hash.h"
 
 #include "harness/base/hash.h"
+#include "solver/row_arrays.h"
 
 namespace cleave {
 
@@ -9,20 +10,7 @@ std::uint64_t problem_hash(const StepProblem& problem) {
   hash.add(std::span(&problem.h_s, 1));
   hash.add(problem.mass);
   hash.add(problem.free_velocity);
-  hash.add(problem.row_body);
-  hash.add(problem.jacobian);
-  hash.add(problem.rhs);
-  hash.add(problem.compliance);
-  hash.add(problem.lower);
-  hash.add(problem.upper);
-  hash.add(problem.row_kind);
-  hash.add(problem.friction_row);
-  hash.add(problem.friction_coefficient);
-  hash.add(problem.row_constraint);
-  hash.add(problem.contact_point);
-  hash.add(problem.warm_impulse);
-  hash.add(problem.box_angle_rad);
-  hash.add(problem.contact_set);
+  visit_row_arrays([&](const char*, auto member, std::size_t, RowArray) { hash.add(problem.*member); });
   return hash.value();
 }
 

@@ -19,32 +19,20 @@ using namespace parameters;
 using Kind = Parameter::Kind;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The first row of that name, or nullptr.
-template <class Row>
-const Row* find_row(std::span<const Row> table, std::string_view name) {
-  const auto found =
-      std::ranges::find(table, name, [](const Row& row) { return std::string_view(row.name); });
-  return found == table.end() ? nullptr : &*found;
-}
-
 void append_new(const std::vector<Parameter>& more, std::vector<Parameter>& to) {
   for (const Parameter& parameter : more)
     if (std::ranges::count(to, parameter.name, &Parameter::name) == 0) to.push_back(parameter);
-}
-
-bool has(const AlgorithmEntry& row, const std::string& parameter) {
-  return std::ranges::count(row.parameters, parameter, &Parameter::name) > 0;
 }
 
 // Who of all rows has a parameter.
 std::string owners(const std::string& parameter) {
   std::vector<std::string> names;
   for (const StrategyRow& row : strategy_table())
-    if (has(row, parameter)) names.push_back(std::string("strategy ") + row.name);
+    if (has_parameter(row, parameter)) names.push_back(std::string("strategy ") + row.name);
   for (const KernelRow& row : kernel_table())
-    if (has(row, parameter)) names.push_back(std::string("kernel ") + row.name);
+    if (has_parameter(row, parameter)) names.push_back(std::string("kernel ") + row.name);
   for (const SolverRow& row : solver_table())
-    if (has(row, parameter)) names.push_back(row.name);
+    if (has_parameter(row, parameter)) names.push_back(row.name);
   return joined(names);
 }
 

@@ -34,7 +34,7 @@ class SlabSweeps {
   void take_in(std::span<const double> impulse, std::span<const double> v, ParallelTasks& tasks);
   // Sweeps, at most kMostSweeps. After every kSweepsOfALook of them, and after the last, rows that have come to or left a bound since
   // the look before, or take_in(), are counted; no more than settled_rows, and the run ends. Returns the last count. beside: one
-  // more task, for work that has nothing to do with the sweeps. Ends with SolveStopped where tasks say so.
+  // more task, for work that has nothing to do with the sweeps. Ends with Stopped where tasks say so.
   int run(
       int sweeps, int settled_rows, ParallelTasks& tasks, const std::function<void()>& beside = [] {});
   // Impulses, those at a bound exactly there, and v to single precision.

@@ -86,8 +86,12 @@ void Slabs::wait_for_neighbours(int begin, int gap) {
   }
 }
 
-// The end of a sweep waits for all sets, and the insides of the next one for it.
+// The end of a sweep waits for all sets, and the insides of the next one for it. The same graph serves all steps that are cut
+// into as many slabs.
 void Slabs::build_graph(int sweeps) {
+  if (count_ == graph_count_ && sweeps == graph_sweeps_) return;
+  graph_count_ = count_;
+  graph_sweeps_ = sweeps;
   const int gaps = count_ - 1;
   waits_.clear();
   places_.resize(sweeps * tasks_of_sweep());

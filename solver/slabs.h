@@ -39,6 +39,7 @@ class Slabs {
   void wait_for_neighbours(int begin, int gap);
 
   int count_ = 0;
+  int graph_count_ = 0, graph_sweeps_ = 0;  // slabs and sweeps of the graph
   std::vector<int> slab_of_body_;
   TaskGraph graph_;
   // Scratch.

@@ -49,15 +49,20 @@ void SolveState::update_velocity(const RowsAround& around) {
   if (around.after) run_over_rows(around.after);
 }
 
-void SolveState::update_shift() {
+template <class Taken>
+void SolveState::put_law_into(std::span<double> slacks, const Taken& taken) const {
   for (std::size_t k = 0; k < shift.size(); ++k) {
     const FrictionCone& cone = step->set().cones()[k];
     if (!cone.coulomb) continue;
-    slack[cone.first_row] -= shift[k];
-    const Eigen::Vector3d w = load_contact(cone, slack);
-    store_contact(cone, shifted_slack(cone.mu, w), slack);
-    shift[k] = slack[cone.first_row] - w[0];
+    slacks[cone.first_row] -= shift[k];
+    const Eigen::Vector3d w = load_contact(cone, slacks);
+    store_contact(cone, shifted_slack(cone.mu, w), slacks);
+    taken(k, slacks[cone.first_row] - w[0]);
   }
+}
+
+void SolveState::update_shift() {
+  put_law_into(slack, [this](std::size_t k, double of_law) { shift[k] = of_law; });
 }
 
 void SolveState::update_velocity_and_shift() {
@@ -101,8 +106,8 @@ void SolveState::states_from_impulses() {
   run_over_rows([&](int first, int last, int) {
     for (int r = first; r < last; ++r) {
       row_state[r] = impulse[r] <= problem.lower[r]   ? RowState::lower
-                 : impulse[r] >= problem.upper[r] ? RowState::upper
-                                                  : RowState::free;
+                     : impulse[r] >= problem.upper[r] ? RowState::upper
+                                                      : RowState::free;
     }
   });
 }
@@ -135,7 +140,7 @@ void SolveState::correct_free(const RowWork& after) {
   update_velocity({add_increment, after});
 }
 
-double SolveState::refine_free(double target, int most_steps, bool count) {
+double SolveState::refine_free(double target, int most_steps, Refining what) {
   const auto size = [this](int r) { return row_state[r] == RowState::free ? std::abs(slack[r]) : 0.0; };
   const auto find_largest = [&](int first, int last, int chunk) {
     chunk_values[chunk] = greatest_of(first, last, size);
@@ -143,7 +148,7 @@ double SolveState::refine_free(double target, int most_steps, bool count) {
   double worst = greatest_over_rows(size);
   for (int k = 0; k < most_steps && worst > target; ++k) {
     correct_free(std::cref(find_largest));
-    if (count) ++summary->refinements;
+    if (what == Refining::answer) ++summary->refinements;
     const double next = greatest_of(chunk_values);
     if (!(next < 0.5 * worst)) return next;
     worst = next;
@@ -151,24 +156,19 @@ double SolveState::refine_free(double target, int most_steps, bool count) {
   return worst;
 }
 
-double SolveState::residual_of_cones() {
-  return greatest_over_chunks([this](int first, int last, int) {
-    return step->set().residual(first, last, step->diagonal(), impulse, slack);
+double SolveState::residual_of(std::span<const double> slacks) {
+  return greatest_over_chunks([&](int first, int last, int) {
+    return step->set().residual(first, last, step->diagonal(), impulse, slacks);
   });
 }
 
+double SolveState::residual_with_shift() { return residual_of(slack); }
+
 double SolveState::residual() {
-  if (!step->set().has_coulomb()) return residual_of_cones();
+  if (!step->set().has_coulomb()) return residual_of(slack);
   law_slack = slack;
-  for (std::size_t k = 0; k < shift.size(); ++k) {
-    const FrictionCone& cone = step->set().cones()[k];
-    if (!cone.coulomb) continue;
-    law_slack[cone.first_row] -= shift[k];
-    store_contact(cone, shifted_slack(cone.mu, load_contact(cone, law_slack)), law_slack);
-  }
-  return greatest_over_chunks([this](int first, int last, int) {
-    return step->set().residual(first, last, step->diagonal(), impulse, law_slack);
-  });
+  put_law_into(law_slack, [](std::size_t, double) {});
+  return residual_of(law_slack);
 }
 
 int SolveState::find_violations(double tolerance, Violated when) {
@@ -202,7 +202,7 @@ bool SolveState::settle(double tolerance, const Settling& settling) {
       settling.most_violations + settling.violated_share * static_cast<double>(impulse.size());
   int least = std::numeric_limits<int>::max();
   for (int round = 0; round < settling.rounds && factor_free(); ++round) {
-    refine_free(0.1 * tolerance, settling.refinements, true);
+    refine_free(0.1 * tolerance, settling.refinements, Refining::answer);
     const int count = find_violations(tolerance);
     // A narrow row may stand at the wrong one of its bounds and yet be right to within the tolerance.
     if (count == 0 || residual() <= tolerance) return true;

@@ -93,8 +93,10 @@ struct SolveState {
   // Most corrections of an answer of which only the violations are counted, and of one that stays.
   static constexpr int kSearchRefinements = 3, kLastRefinements = 2;
 
-  // correct_free until w on the free rows is below `target` or no longer falls; returns the largest |w| left.
-  double refine_free(double target, int most_steps, bool count);
+  // correct_free until w on the free rows is below `target` or no longer falls; returns the largest |w| left. What only finds
+  // out whether an active set is right does not count as refinements of the answer.
+  enum class Refining { answer, search };
+  double refine_free(double target, int most_steps, Refining what);
 
   // Rows whose impulse left its bounds, or would after a step along its own slack, or whose slack has the wrong sign, beyond
   // `tolerance` (m/s); fills `violated` and moves nothing.
@@ -129,8 +131,12 @@ struct SolveState {
 
   // The quantity the judge measures; infinite where it is no number.
   double residual();
-  // The same of the cones that the strategy sees in the place of Coulomb's law.
-  double residual_of_cones();
+  // The same with the shift left in, of the cones that the strategy sees in the place of Coulomb's law.
+  double residual_with_shift();
+  // The normal slacks of Coulomb's law (cone.h) in the place of those with the shift: taken(k, its mu |w_t|).
+  template <class Taken>
+  void put_law_into(std::span<double> slacks, const Taken& taken) const;
+  double residual_of(std::span<const double> slacks);
   // shift <- mu |w_t| of the present velocities, and into the slacks.
   void update_shift();
 

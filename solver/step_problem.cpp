@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <utility>
+
+#include "solver/row_arrays.h"
 
 namespace cleave {
 namespace {
@@ -40,25 +41,12 @@ std::string find_shape_error(const StepProblem& p) {
   }
   const std::size_t n = p.body_count();
   const std::size_t m = p.row_count();
-  std::string error;
-  const auto wrong = [&error](std::string found) { return !(error = std::move(found)).empty(); };
-  if (wrong(find_size_error("mass", p.mass, 36, n, "bodies")) ||
-      wrong(find_size_error("row_body", p.row_body, 2, m, "rows")) ||
-      wrong(find_size_error("jacobian", p.jacobian, 12, m, "rows")) ||
-      wrong(find_size_error("compliance", p.compliance, 1, m, "rows")) ||
-      wrong(find_size_error("lower", p.lower, 1, m, "rows")) ||
-      wrong(find_size_error("upper", p.upper, 1, m, "rows")) ||
-      wrong(find_size_error("row_kind", p.row_kind, 1, m, "rows")) ||
-      wrong(find_size_error("friction_row", p.friction_row, 1, m, "rows")) ||
-      wrong(find_size_error("friction_coefficient", p.friction_coefficient, 1, m, "rows")) ||
-      wrong(find_size_error("row_constraint", p.row_constraint, 1, m, "rows")) ||
-      wrong(find_size_error("contact_point", p.contact_point, 3, m, "rows")) ||
-      wrong(find_size_error("warm_impulse", p.warm_impulse, 1, m, "rows")) ||
-      (!p.box_angle_rad.empty() && wrong(find_size_error("box_angle_rad", p.box_angle_rad, 1, m, "rows"))) ||
-      (!p.contact_set.empty() && wrong(find_size_error("contact_set", p.contact_set, 1, m, "rows")))) {
-    return error;
-  }
-  return {};
+  std::string error = find_size_error("mass", p.mass, 36, n, "bodies");
+  visit_row_arrays([&](const char* name, auto member, std::size_t width, RowArray kind) {
+    if (!error.empty() || (kind == RowArray::may_be_empty && (p.*member).empty())) return;
+    error = find_size_error(name, p.*member, width, m, "rows");
+  });
+  return error;
 }
 
 std::string find_infinite(const char* array, const std::vector<double>& values) {

@@ -13,11 +13,11 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/base/stop.h"
 #include "solver/parts.h"
 #include "solver/solution.h"
 #include "solver/stage_times.h"
 #include "solver/step_problem.h"
-#include "solver/stop.h"
 
 namespace cleave {
 
@@ -38,7 +38,7 @@ struct SolveOptions {
   // Solves are those of consecutive steps of one simulation, each from the solution before: what pays is carried from
   // one to the next (carried_factor.h), and results depend on the steps before, within the target.
   bool session = false;
-  // Where there is one and it comes true, a solve ends with SolveStopped at its next factorisation,
+  // Where there is one and it comes true, a solve ends with Stopped at its next factorisation,
   // back-substitution, sweep or block column of a dense interface. Must outlive the solver.
   const std::atomic<bool>* stop = nullptr;
   DispatchCost dispatch = {};  // that the model of a one-thread solve charges
@@ -77,7 +77,7 @@ class StepSolver {
   // `refused`, with a message that names what is wrong.
   // solution.impulse is the warm start (m); impulse and velocity are the result. The object keeps its
   // scratch: the second solve of one structure allocates nothing in our code. Numerical trouble is a status,
-  // never an exception; SolveStopped and std::bad_alloc are, and leave nothing in solution to rely on.
+  // never an exception; Stopped and std::bad_alloc are, and leave nothing in solution to rely on.
   SolveSummary solve(const StepProblem& problem, const Parts& parts, Solution& solution);
 
   // Whether the result's cost depends on the parts; solvers that ignore partitions run once a step.

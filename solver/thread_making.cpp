@@ -12,23 +12,38 @@
 
 namespace cleave {
 
+namespace {
+
+// Threads that wait for its end, which joins them however it comes.
+class WaitingThreads {
+ public:
+  explicit WaitingThreads(int count) { threads_.reserve(count); }
+  ~WaitingThreads() {
+    ends_ = true;
+    ends_.notify_all();
+    for (std::thread& thread : threads_) thread.join();
+  }
+  void add() {
+    threads_.emplace_back([this] { ends_.wait(false); });
+  }
+  int count() const { return static_cast<int>(threads_.size()); }
+
+ private:
+  std::atomic<bool> ends_{false};
+  std::vector<std::thread> threads_;
+};
+
+}  // namespace
+
 // As many are made by somebody who says so.
 void check_threads(int count) {
-  std::atomic<bool> all_made{false};
-  std::vector<std::thread> threads;
-  threads.reserve(count);
-  std::string refusal;
+  WaitingThreads threads(count);
   try {
-    while (static_cast<int>(threads.size()) < count)
-      threads.emplace_back([&all_made] { all_made.wait(false); });
+    while (threads.count() < count) threads.add();
   } catch (const std::system_error& error) {
-    refusal = "the system makes " + std::to_string(threads.size()) + " of " + std::to_string(count) +
-              " threads: " + error.what();
+    throw std::runtime_error("the system makes " + std::to_string(threads.count()) + " of " +
+                             std::to_string(count) + " threads: " + error.what());
   }
-  all_made = true;
-  all_made.notify_all();
-  for (std::thread& thread : threads) thread.join();
-  if (!refusal.empty()) throw std::runtime_error(refusal);
 }
 
 void load_unwinder() {

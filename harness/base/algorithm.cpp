@@ -69,6 +69,10 @@ std::string known_text(const std::string& text, std::span<const Parameter> param
 
 }  // namespace
 
+bool has_parameter(const AlgorithmEntry& entry, const std::string& name) {
+  return std::ranges::count(entry.parameters, name, &Parameter::name) > 0;
+}
+
 std::string unavailable_text(const AlgorithmEntry& entry) {
   return entry.unavailable.empty() ? "" : "is not in this build: " + entry.unavailable;
 }
@@ -88,6 +92,11 @@ std::string reason_to_leave_out(const AlgorithmEntry& entry, const Given& common
 }
 
 std::string algorithm_name(const std::string& text) { return text.substr(0, text.find('@')); }
+
+bool names_parameter(const std::string& text, const std::string& name) {
+  return std::ranges::any_of(parts_of(text),
+                             [&](const std::string& part) { return part.starts_with(name + "="); });
+}
 
 Algorithm read_algorithm(const std::string& option, const std::string& text,
                          std::span<const Parameter> parameters, const Given& common,

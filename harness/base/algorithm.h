@@ -5,10 +5,12 @@
 // Tables and figures show the text as it was given.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/base/parameter.h"
@@ -29,6 +31,16 @@ struct AlgorithmEntry {
   // libscotch-dev and build again". Such a row is listed and cannot be made.
   std::string unavailable = {};
 };
+
+// The row of that name, or nullptr.
+template <class Row>
+const Row* find_row(std::span<const Row> table, std::string_view name) {
+  const auto found =
+      std::ranges::find(table, name, [](const Row& row) { return std::string_view(row.name); });
+  return found == table.end() ? nullptr : &*found;
+}
+
+bool has_parameter(const AlgorithmEntry& entry, const std::string& name);
 
 // "is not in this build: install libscotch-dev and build again"; empty for a row that is available.
 std::string unavailable_text(const AlgorithmEntry& entry);
@@ -54,6 +66,9 @@ std::string reason_to_leave_out(const AlgorithmEntry& entry,
 
 // The part before the first @.
 std::string algorithm_name(const std::string& text);
+
+// Whether the text says a value of this parameter itself, as mindp@max-bodies=10 does.
+bool names_parameter(const std::string& text, const std::string& name);
 
 // Reads the text against the parameters of its algorithm; what it does not give comes from `common` and then
 // from the defaults. In the text that is kept a file of kind content is its fingerprint. option: what errors

@@ -16,14 +16,6 @@ namespace {
 
 std::string quoted(const std::string& text) { return "'" + text + "'"; }
 
-// std::errc::invalid_argument unless the whole text is one number.
-template <class Number>
-std::errc read(const std::string& text, Number& value) {
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc{} && stop != end ? std::errc::invalid_argument : error;
-}
-
 // A whole number as one writes it: 200000, not 2e+05.
 std::string end_text(double end) {
   const bool is_count = end == std::floor(end) && std::abs(end) < 1e6;
@@ -57,7 +49,7 @@ std::string Range::text() const {
 
 double parse_number(const std::string& option, const std::string& text, const Range& range) {
   double value = 0;
-  const std::errc error = read(text, value);
+  const std::errc error = error_of_whole(text, value);
   if (error == std::errc::invalid_argument)
     reject(option, quoted(text), "is not a number in " + range.text());
   if (error != std::errc{} || !range.contains(value)) reject(option, text, "is not in " + range.text());
@@ -67,7 +59,7 @@ double parse_number(const std::string& option, const std::string& text, const Ra
 int parse_integer(const std::string& option, const std::string& text, const Range& range) {
   constexpr int kLeast = std::numeric_limits<int>::min(), kMost = std::numeric_limits<int>::max();
   long long value = 0;
-  const std::errc error = read(text, value);
+  const std::errc error = error_of_whole(text, value);
   if (error == std::errc::invalid_argument)
     reject(option, quoted(text), "is not a whole number in " + range.text());
   if (error != std::errc{} || value < kLeast || value > kMost) {
@@ -82,7 +74,7 @@ int parse_integer(const std::string& option, const std::string& text, const Rang
 
 std::uint64_t parse_seed(const std::string& option, const std::string& text) {
   std::uint64_t value = 0;
-  if (read(text, value) != std::errc{}) reject(option, quoted(text), "is not a whole number in [0, 2^64)");
+  if (!read_whole(text, value)) reject(option, quoted(text), "is not a whole number in [0, 2^64)");
   return value;
 }
 

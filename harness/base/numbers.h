@@ -28,12 +28,18 @@ double parse_number(const std::string& option, const std::string& text, const Ra
 int parse_integer(const std::string& option, const std::string& text, const Range& range);
 std::uint64_t parse_seed(const std::string& option, const std::string& text);
 
-// False unless the whole text is one number that fits; "nan" and "inf" are floating-point ones.
+// Reads a text that is one number; "nan" and "inf" are floating-point ones. std::errc::invalid_argument for any other text,
+// result_out_of_range for a number that does not fit.
 template <class Number>
-bool read_whole(const std::string& text, Number& value) {
+std::errc error_of_whole(const std::string& text, Number& value) {
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc{} && stop == end;
+  return error == std::errc{} && stop != end ? std::errc::invalid_argument : error;
+}
+
+template <class Number>
+bool read_whole(const std::string& text, Number& value) {
+  return error_of_whole(text, value) == std::errc{};
 }
 
 // "a,b,c" to its items.

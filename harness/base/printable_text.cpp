@@ -1,5 +1,6 @@
 #include "harness/base/printable_text.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 
@@ -26,6 +27,8 @@ std::uint32_t take_character(std::string_view& text) {
   return is_longer_than_needed || is_surrogate || character > 0x10ffff ? kNoCharacter : character;
 }
 
+bool begins_character(char byte) { return (static_cast<unsigned char>(byte) & 0xc0) != 0x80; }
+
 bool is_control(std::uint32_t character) {
   const bool is_line_end = character == 0x2028 || character == 0x2029;
   return character < 0x20 || (character >= 0x7f && character < 0xa0) || is_line_end;
@@ -50,6 +53,17 @@ std::string printable(std::string_view text) {
     shown += escaped;
   }
   return shown;
+}
+
+std::size_t count_characters(std::string_view text) {
+  return static_cast<std::size_t>(std::ranges::count_if(text, begins_character));
+}
+
+std::string_view first_characters(std::string_view text, std::size_t most) {
+  std::size_t end = 0;
+  for (std::size_t count = 0; end < text.size(); ++end)
+    if (begins_character(text[end]) && count++ == most) break;
+  return text.substr(0, end);
 }
 
 void say(std::string_view text) { std::fprintf(stderr, "%s\n", printable(text).c_str()); }

@@ -16,8 +16,9 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   // Steps done, elapsed and expected time, which expected_seconds reads again.
-  void update(int done, int total);
-  // For other work: whether it is time for a line, and the line behind the label.
+  void update(long long done, long long total);
+  // For other work: whether it is time for a line, and the line behind the label. On a terminal it is cut to what fits beside
+  // the cursor, as a line that wraps cannot be rewritten.
   bool is_due() const;
   void show(const std::string& text);
 
@@ -26,7 +27,7 @@ class ProgressLine {
   std::string label_;
   bool terminal_;
   bool shown_ = false;
-  std::size_t width_ = 0;  // of the text that stands on the terminal
+  std::size_t width_ = 0;  // characters of the text that stands on the terminal
   Clock::time_point begin_ = Clock::now();
   Clock::time_point last_ = begin_;
 };

@@ -1,4 +1,4 @@
-// How a solve that is under way is asked to end.
+// How work that is under way is asked to end.
 #pragma once
 
 #include <atomic>
@@ -6,14 +6,14 @@
 
 namespace cleave {
 
-// Out of a solve whose caller asked it to end. The solver may be asked to solve again.
-class SolveStopped : public std::exception {
+// Out of a solve or a partitioner whose caller asked it to end. It may be asked to work again.
+class Stopped : public std::exception {
  public:
-  const char* what() const noexcept override { return "stopped while solving"; }
+  const char* what() const noexcept override { return "stopped before its end"; }
 };
 
 inline void check_stop(const std::atomic<bool>* stop) {
-  if (stop != nullptr && stop->load(std::memory_order_relaxed)) throw SolveStopped();
+  if (stop != nullptr && stop->load(std::memory_order_relaxed)) throw Stopped();
 }
 
 }  // namespace cleave

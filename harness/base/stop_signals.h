@@ -3,6 +3,8 @@
 
 #include <signal.h>
 
+#include <atomic>
+
 namespace cleave {
 
 // From the keyboard, from another program, and from a terminal that is closed.
@@ -14,5 +16,11 @@ inline bool is_listened_to(int signal) {
   ::sigaction(signal, nullptr, &now);
   return signal != SIGHUP || now.sa_handler != SIG_IGN;
 }
+
+// From now on the first of these signals is for the work at hand to see; the second ends the program at once.
+void stop_on_signals();
+
+// True once the program was asked to stop, after stop_on_signals().
+const std::atomic<bool>& stop_requested();
 
 }  // namespace cleave

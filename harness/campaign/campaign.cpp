@@ -17,14 +17,13 @@ namespace fs = std::filesystem;
 // Whether it is as it was written; a campaign that was killed between two files leaves it otherwise.
 bool is_whole(const fs::path& share) {
   try {
-    const auto sums = read_checksums(share);
-    return sums.contains(kIndexFile) && sums.at(kIndexFile) == sha256_of(share / kIndexFile);
+    return is_as_listed(share, read_checksums(share), kIndexFile);
   } catch (const std::exception&) {
     return false;
   }
 }
 
-// What remains of a row of an index that is not whole: its directory has to say the rest.
+// What remains of a row of an index that is not whole where no log vouches for it: its directory has to say the rest.
 IndexRow unsure(const IndexRow& row) {
   IndexRow pending;
   pending.cell = row.cell;
@@ -100,7 +99,8 @@ void Campaign::keep_earlier(const std::vector<CampaignCell>& all) {
   const bool whole = is_whole(share);
   for (IndexRow row : read_index(share / kIndexFile)) {
     if (names.contains(row.cell)) continue;
-    if (!whole) row = unsure(row);
+    const bool has_log = row.log != "-" && still_stands(options_.out, row);
+    if (!whole && !has_log) row = unsure(row);
     row.number = 0;
     if (row.is_pending()) take_if_complete(options_.out, row);
     if (still_stands(options_.out, row)) earlier_.push_back(std::move(row));

@@ -100,8 +100,10 @@ std::vector<fs::path> share_directories(const fs::path& out) {
 }
 
 void write_index(const fs::path& share, const std::vector<IndexRow>& rows) {
-  write_whole_file(share / kIndexFile, index_text(rows));
-  write_checksums(share, {kSpecFile, kIndexFile});
+  const std::string index = index_text(rows);
+  const std::string sums = checksum_line(sha256_of(share / kSpecFile), kSpecFile) +
+                           checksum_line(sha256_of_bytes(index), kIndexFile);
+  write_whole_files(std::vector<NamedBytes>{{share / kIndexFile, index}, {share / kChecksumsFile, sums}});
 }
 
 }  // namespace cleave

@@ -62,9 +62,7 @@ void take_status(const fs::path& directory, const StoredManifest& manifest, Inde
 // The two files that every run leaves are those that were written.
 bool is_sealed(const fs::path& directory) {
   const auto sums = read_checksums(directory);
-  return std::ranges::all_of(std::array{kManifestFile, kStepsFile}, [&](const char* file) {
-    return sums.contains(file) && sums.at(file) == sha256_of(directory / file);
-  });
+  return is_as_listed(directory, sums, kManifestFile) && is_as_listed(directory, sums, kStepsFile);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "harness/campaign/spec.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <stdexcept>
 
@@ -72,7 +73,9 @@ class Expansion {
     }
     for (const toml::node* rule : rules(spec, "include")) include(*rule->as_table(), grid, label);
     for (const Exclusion& exclusion : exclusions_)
-      if (exclusion.removed == 0) reject_at(file_, exclusion.rule->source(), "exclude", "removes no cell");
+      if (exclusion.removed == 0)
+        reject_at(file_, exclusion.rule->source(), "exclude",
+                  "removes no cell" + why_nothing_goes(exclusion));
     if (cells_.empty())
       throw std::invalid_argument(
           file_ + ": has no cell" +
@@ -117,7 +120,22 @@ class Expansion {
     }
   }
 
+  // A key of which no value is one that cells have; empty: there is none.
+  std::string why_nothing_goes(const Exclusion& exclusion) const {
+    for (const Dimension& dimension : exclusion.unwanted) {
+      const auto found = values_.find(dimension.key);
+      if (found == values_.end()) continue;
+      const std::vector<std::string> values(found->second.begin(), found->second.end());
+      const auto occurs = [&](const std::string& value) { return std::ranges::count(values, value) > 0; };
+      if (!dimension.values.empty() && std::ranges::none_of(dimension.values, occurs))
+        return ": " + dimension.key + ": " + unknown_name_text(dimension.values.front(), values);
+    }
+    return {};
+  }
+
   void exclude(std::vector<Options>& found) {
+    for (const Options& options : found)
+      for (const auto& [key, value] : options) values_[key].insert(value);
     for (Exclusion& exclusion : exclusions_)
       exclusion.removed += std::erase_if(found, [&](const Options& options) {
         return std::ranges::all_of(exclusion.unwanted, [&](const Dimension& dimension) {
@@ -199,6 +217,7 @@ class Expansion {
 
   const std::string& file_;
   std::vector<std::string> known_;
+  std::map<std::string, std::set<std::string>> values_;  // by key, of cells that exclusions looked at
   std::vector<Exclusion> exclusions_;
   std::vector<CampaignCell> cells_;
   std::map<std::string, Maker> makers_;  // by the name of the cell, who made it

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "harness/base/progress.h"
+#include "harness/base/stop_signals.h"
 #include "harness/commands/manifested_work.h"
 #include "harness/experiment/simulation.h"
 #include "harness/files/problem_file.h"
@@ -64,6 +65,9 @@ std::vector<CalibrationProblem> recorded_problems(const std::vector<std::string>
   std::vector<CalibrationProblem> problems;
   for (const std::string& path : files) {
     ProblemFile file = read_problem_file_aloud(path);
+    if (file.problem.row_count() == 0)
+      throw std::invalid_argument("FILES: " + path +
+                                  ": has no constraint row, so that there is nothing to time");
     std::vector<double> position_m = known_positions(file);
     problems.push_back({path, std::move(file.problem), std::move(position_m)});
   }
@@ -79,7 +83,7 @@ std::vector<CalibrationProblem> simulated_problems(std::uint64_t seed) {
     const auto keep = [&](const ObservedStep& step) {
       if (!step.rows.empty()) problems.push_back({name, step.problem, step.context.position_m});
     };
-    Simulation(options_of(source, seed), stop_requested(), keep).run([](auto) {}, [](int, int) {});
+    Simulation(options_of(source, seed), stop_requested(), keep).run([](auto) {}, [](auto...) {});
     line.update(++done, static_cast<int>(std::size(kSources)));
   }
   return problems;

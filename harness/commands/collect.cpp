@@ -9,6 +9,7 @@
 #include "harness/base/csv_text.h"
 #include "harness/base/names.h"
 #include "harness/base/printable_text.h"
+#include "harness/campaign/campaign_index.h"
 #include "harness/commands/check_arguments.h"
 #include "harness/commands/collected_tables.h"
 #include "harness/commands/command.h"
@@ -120,7 +121,7 @@ void publish(const CollectedTables& files, GrowingFile& rows, const std::string&
 std::vector<fs::path> files_read(std::span<const std::string> directories,
                                  std::span<const MeasuredCell> cells) {
   std::vector<fs::path> files;
-  for (const std::string& directory : directories) files.push_back(fs::path(directory) / "index.csv");
+  for (const std::string& directory : directories) files.push_back(fs::path(directory) / kIndexFile);
   for (const MeasuredCell& cell : cells)
     for (const char* name : {kStepsFile, kManifestFile, kChecksumsFile})
       files.push_back(cell.directory / name);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "harness/base/refusals.h"
 #include "harness/files/checksums.h"
 
 namespace cleave {
@@ -26,13 +27,10 @@ CollectedTables::CollectedTables(const fs::path& out)
 void check_collected_tables(const fs::path& out, CheckList& list) {
   const CollectedTables files(out);
   std::map<std::string, std::string> sums;
-  std::string error;
-  try {
+  const std::string error = wrong_in([&]() -> std::string {
     sums = read_checksum_list(files.checksums);
-    if (sums.size() != files.tables().size()) error = "; it names other files than the three tables";
-  } catch (const std::invalid_argument& wrong) {
-    error = std::string("; ") + wrong.what();
-  }
+    return sums.size() == files.tables().size() ? "" : "; it names other files than the three tables";
+  });
   list.add(error.empty(), files.checksums.string(), "readable" + error);
   for (const fs::path& table : files.tables()) {
     std::error_code none;

@@ -11,9 +11,11 @@
 
 #include "harness/base/names.h"
 #include "harness/base/printable_text.h"
+#include "harness/base/refusals.h"
 #include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
 #include "harness/commands/turned_problem.h"
+#include "harness/commands/vtu_series.h"
 #include "harness/experiment/friction.h"
 #include "harness/experiment/problem_graph.h"
 #include "harness/files/fclib_file.h"
@@ -79,27 +81,16 @@ void write_matrix_market(const ProblemFile& file, const ExportOptions& options) 
   write_whole_file(options.out, matrix->text(file.problem, asked_partition(file, options)));
 }
 
-std::string picture_of(const ProblemFile& file, const std::string& path) {
-  try {
-    return vtu_text(file);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(path + ": " + error.what());
-  }
-}
-
 void write_vtu(const ProblemFile& file, const ExportOptions& options) {
-  write_whole_file(options.out, picture_of(file, options.files.front()));
+  write_whole_file(options.out, in_context(options.files.front(), [&] { return vtu_text(file); }));
 }
 
 // Boxes and cones are other problems than FCLIB's: they become Coulomb's law where that is asked for.
 void write_fclib(const ProblemFile& file, const ExportOptions& options) {
   ProblemFile turned = file;
   turn_friction(options.files.front(), options.friction.value_or(""), turned);
-  try {
-    write_fclib_file(options.out, fclib_of_problem(turned.problem));
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(options.files.front() + ": cannot be an FCLIB problem: " + error.what());
-  }
+  in_context(options.files.front() + ": cannot be an FCLIB problem",
+             [&] { write_fclib_file(options.out, fclib_of_problem(turned.problem)); });
 }
 
 struct ExportFormat {
@@ -162,22 +153,6 @@ const ExportFormat& read_format(const ExportOptions& options) {
   return format;
 }
 
-// Pictures of several problems beside a list of them, which appears last: NAME_0.vtu and so on, and NAME.pvd.
-void write_series(const ExportOptions& options) {
-  const fs::path out = options.out;
-  std::vector<VtuAtTime> pictures;
-  for (std::size_t k = 0; k < options.files.size(); ++k)
-    pictures.push_back({0, out.stem().string() + "_" + std::to_string(k) + ".vtu"});
-  for (const VtuAtTime& picture : pictures) check_out_file(out.parent_path() / picture.name, options.force);
-  for (std::size_t k = 0; k < options.files.size(); ++k) {
-    const ProblemFile file = read_problem_file_aloud(options.files[k]);
-    pictures[k].time_s = file.step * file.problem.h_s;
-    write_whole_file(out.parent_path() / pictures[k].name, picture_of(file, options.files[k]));
-  }
-  write_whole_file(out, pvd_text(pictures));
-  say(options.out + ": " + std::to_string(pictures.size()) + " steps");
-}
-
 // Whether it is a series that is asked for.
 bool check_series(const ExportOptions& options, const ExportFormat& format) {
   const bool ends = options.out.ends_with(".pvd");
@@ -196,15 +171,11 @@ int export_problem(const ExportOptions& options) {
   const ExportFormat& format = read_format(options);
   check_out_file(options.out, options.force);
   check_not_read(options.out, std::vector<fs::path>(options.files.begin(), options.files.end()));
-  if (check_series(options, format)) {
-    write_series(options);
-    return kExitOk;
-  }
+  if (check_series(options, format)) return write_vtu_series(options.files, options.out, options.force);
   const ProblemFile file = read_problem_file_aloud(options.files.front());
   format.write(file, options);
-  const BodyGraph graph = body_graph_of(file.problem, file.step);
-  say(options.out + ": " + std::to_string(graph.body_count()) + " bodies, " +
-      std::to_string(graph.edge_count()) + " edges");
+  say(options.out + ": of " + std::to_string(file.problem.body_count()) + " bodies and " +
+      std::to_string(file.problem.row_count()) + " constraint rows");
   return kExitOk;
 }
 

@@ -8,6 +8,7 @@
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
 #include "harness/base/printable_text.h"
+#include "harness/base/refusals.h"
 #include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
 #include "harness/files/fclib_file.h"
@@ -50,11 +51,7 @@ ProblemFile read_fclib(const ImportOptions& options) {
   ProblemFile file;
   const std::optional<int> unknowns = unknowns_of_body(options, global);
   const double h_s = step_of(options, global);
-  try {
-    file.problem = problem_of_fclib(global, unknowns);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(options.file + ": " + error.what());
-  }
+  file.problem = in_context(options.file, [&] { return problem_of_fclib(global, unknowns); });
   file.problem.h_s = h_s;
   if (!file.problem.contact_set.empty()) file.friction_model = "coulomb";
   fill_left_out(file);

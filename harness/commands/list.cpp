@@ -93,8 +93,7 @@ void print_table(const char* title, const std::vector<Line>& lines) {
 
 int list(const std::string& what, bool names_only) {
   const std::vector<std::string> choices = listings();
-  if (!what.empty() && std::ranges::find(choices, what) == choices.end())
-    throw std::invalid_argument(unknown_name_text(what, choices));
+  if (!what.empty()) check_name("WHAT", what, choices);
   for (const std::string& name : choices) {
     const bool is_columns = name == choices.back();
     // The columns are many; they are shown when asked for.

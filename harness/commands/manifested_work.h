@@ -2,7 +2,6 @@
 // and turn that into an exit code.
 #pragma once
 
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -14,12 +13,9 @@
 
 namespace cleave {
 
-// True once the program was interrupted (stop_signals.h) inside do_manifested_work.
-const std::atomic<bool>& stop_requested();
-
 // Creates the directory, holds its lock (files/directory_lock), takes away what --force overwrites, and does the work
-// between the two writings of manifest.json; `checksums` comes last. The first signal is for the work
-// to see in stop_requested(); a second one ends the program at once. Prints the summary on stderr and returns
+// between the two writings of manifest.json; `checksums` comes last. The first signal to stop (stop_signals.h) is
+// for the work to see; a second one ends the program at once. Prints the summary on stderr and returns
 // the exit code. Everything must have been checked that can be refused.
 int do_manifested_work(const RunOptions& options, const WorkDescription& description,
                        const std::function<RunSummary()>& work);

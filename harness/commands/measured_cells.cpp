@@ -41,8 +41,7 @@ std::vector<fs::path> cells_below(const fs::path& root) {
 void check_sum(const fs::path& directory) {
   if (!fs::exists(directory / kChecksumsFile)) return;
   const std::map<std::string, std::string> sums = read_checksums(directory);
-  const auto sum = sums.find(kStepsFile);
-  if (sum != sums.end() && sum->second != sha256_of(directory / kStepsFile))
+  if (sums.contains(kStepsFile) && !is_as_listed(directory, sums, kStepsFile))
     throw std::invalid_argument((directory / kStepsFile).string() + ": is not what the run wrote, by " +
                                 (directory / kChecksumsFile).string() + "; 'cleave verify " +
                                 directory.string() + "' says more");

@@ -10,6 +10,7 @@
 #include "harness/commands/command.h"
 #include "harness/commands/verify_table.h"
 #include "harness/experiment/earlier_tables.h"
+#include "harness/experiment/repeated_options.h"
 #include "harness/files/manifest.h"
 #include "harness/files/manifest_reader.h"
 
@@ -78,16 +79,27 @@ CellCommand command_of(const RepeatedRun& run, const fs::path& out) {
       {}};
   if (run.threads) command.words.push_back("--threads=" + std::to_string(*run.threads));
   if (run.force) command.words.push_back("--force");
+  for (const auto& [name, value] : run.files) command.words.push_back("--" + name + "=" + value);
   return command;
 }
 
 }  // namespace
+
+std::vector<std::string> missing_files(const RepeatedRun& run) {
+  std::vector<std::string> names =
+      options_of_files(read_manifest_options(run.directory / kManifestFile, "run"));
+  std::erase_if(names, [&](const std::string& name) { return run.files.contains(name); });
+  return names;
+}
 
 bool check_repeated_run(const RepeatedRun& run, CheckList& list) {
   const std::string cell = run.directory.string();
   const StoredManifest manifest = checked_manifest(run.directory);
   if (build_key(manifest.build) != build_key(build_info()))
     say(cell + ": was run by another build, of commit " + manifest.git_hash);
+  if (const std::vector<std::string> missing = missing_files(run); !missing.empty())
+    throw std::invalid_argument("--" + missing.front() + ": is required, as " + cell +
+                                " knows of its file what stood in it and not where it lies");
   const WorkDirectory work(run.out);
   bool interrupted = false;
   const CellEnd end = run_to_end(command_of(run, work.path()), interrupted);

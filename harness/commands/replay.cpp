@@ -9,6 +9,7 @@
 #include "harness/base/names.h"
 #include "harness/base/printable_text.h"
 #include "harness/base/progress.h"
+#include "harness/base/stop_signals.h"
 #include "harness/base/stopwatch.h"
 #include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
@@ -192,7 +193,7 @@ class Replay {
         solve(options_.files[i], out, recorder);
         line.update(i + 1, total);
       }
-    } catch (const SolveStopped&) {
+    } catch (const Stopped&) {
       // The rows of the problem at hand are not all there, so none is written.
     }
     summary_.wall_s = watch.lap_ms() / 1000;
@@ -253,6 +254,11 @@ ReplayOptions with_stored(const Given& given, ReplayOptions options) {
   if (options.files.empty())
     for (std::string file; std::getline(files, file);) options.files.push_back(file);
   if (const std::string stored = take("friction"); options.friction.empty()) options.friction = stored;
+  if (options.friction.find('@') != std::string::npos)
+    throw std::invalid_argument(
+        "--friction: '" + options.friction +
+        "' has parameters; replay takes the coefficients of the files, write --friction " +
+        algorithm_name(options.friction));
   if (!options.friction.empty()) check_name("--friction", options.friction, recorded_friction_models());
   options.cold |= take("cold") == "true";
   options.write_solutions |= take("write-solutions") == "true";

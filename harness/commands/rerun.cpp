@@ -1,5 +1,8 @@
-// cleave rerun: one run again, from its manifest alone; its rows must be those that it left, in all but times and threads.
+// cleave rerun: one run again, from its manifest and the files that it read; its rows must be those that it left, in all but times and
+// threads.
+#include <array>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <stdexcept>
 
@@ -14,14 +17,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Of which a manifest may know no more than what the file said.
+constexpr std::array kNameFiles = {"scene", "partitioner", "body-order", "calibration"};
+
 struct RerunOptions {
   std::string cell, out, threads;
   bool force = false;
+  std::map<std::string, std::string> files;  // by option, as given
 };
 
 int rerun(const RerunOptions& options, const std::string& program) {
   if (options.cell.empty()) throw std::invalid_argument("CELL: the output directory of a run is required");
-  RepeatedRun run{program, options.cell, options.out, {}, options.force};
+  RepeatedRun run{program, options.cell, options.out, {}, options.force, {}};
+  for (const auto& [name, value] : options.files)
+    if (!value.empty()) run.files.emplace(name, value);
   if (!options.threads.empty()) run.threads = parse_integer("--threads", options.threads, {1, 1024});
   if (!options.out.empty()) {
     check_run_directory(options.out, options.force, {kStepsFile});
@@ -43,7 +52,11 @@ std::function<int()> declare_rerun(CLI::App& app, const std::vector<std::string>
       ->type_name("DIR");
   app.add_option("--threads", options->threads, "threads of a solve, in place of those it had")
       ->type_name("N");
-  app.add_flag("--force", options->force, "overwrite the steps.csv that --out holds");
+  for (const char* name : kNameFiles)
+    app.add_option("--" + std::string(name), options->files[name],
+                   "as the run was given it, where that names a file")
+        ->type_name(name == std::string("calibration") ? "FILE" : "TEXT");
+  app.add_flag("--force", options->force, "take away what an earlier command left in --out");
   return [options, argv] { return rerun(*options, argv.front()); };
 }
 

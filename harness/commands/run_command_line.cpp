@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "harness/base/names.h"
+#include "harness/base/refusals.h"
 #include "harness/files/manifest_reader.h"
 
 namespace cleave {
@@ -121,11 +122,9 @@ RepeatedOptions with_config(Given given, const std::string& name, bool CommandSe
                             const std::vector<std::string>& own) {
   const auto config = given.extract("config");
   if (config.empty()) return {given, {}};
-  try {
+  return in_context("--config", [&] {
     return repeated_options(read_manifest_options(config.mapped(), name), given, command, own);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(std::string("--config: ") + error.what());
-  }
+  });
 }
 
 }  // namespace cleave

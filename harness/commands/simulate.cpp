@@ -5,7 +5,9 @@
 #include <optional>
 #include <utility>
 
+#include "harness/base/printable_text.h"
 #include "harness/base/progress.h"
+#include "harness/base/stop_signals.h"
 #include "harness/commands/check_arguments.h"
 #include "harness/commands/manifested_work.h"
 #include "harness/commands/motion_recorder.h"
@@ -44,9 +46,13 @@ int simulate(const std::string& command, const std::vector<std::string>& argv, c
     CsvRecorder recorder(std::filesystem::path(options.out) / kStepsFile, csv_header());
     const auto write = [&recorder](std::span<const StepRecord> rows) { recorder.append(csv_lines(rows)); };
     ProgressLine line(options.scene.text);
-    RunSummary summary = simulation.run(write, [&line](int done, int total) { line.update(done, total); });
+    RunSummary summary =
+        simulation.run(write, [&line](long long done, long long total) { line.update(done, total); });
     if (motion) motion->finish();
     if (watch && !summary.interrupted) tell_findings(options.out, watch->findings());
+    if (watch && summary.interrupted)
+      say("--explain-model: interrupted, so that nothing is explained and " + std::string(kFindingsFile) +
+          " is not written");
     return summary;
   });
 }

@@ -111,7 +111,7 @@ SplitSetup read_split_setup(const StoredPartition& partition) {
     setup.order = read_body_order(kBodyOrder, order->text);
   setup.choice = read_choice(partition);
   if (const StoredParameter* arity = find_stored(partition, kArity))
-    setup.arity = static_cast<int>(parse_integer("--arity", arity->text, kArities));
+    setup.arity = parse_integer("--arity", arity->text, kArities);
   else if (!partition.parent_of_part.empty() && setup.choice.empty())
     throw std::invalid_argument("arity is missing, which parts in a tree have");
   return setup;

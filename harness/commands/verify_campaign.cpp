@@ -4,9 +4,11 @@
 #include <cstdio>
 #include <map>
 #include <stdexcept>
+#include <tuple>
 
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
+#include "harness/base/refusals.h"
 #include "harness/campaign/cell_result.h"
 #include "harness/campaign/spec.h"
 #include "harness/commands/collected_tables.h"
@@ -29,35 +31,46 @@ std::pair<int, int> share_of(const fs::path& out, const fs::path& share) {
   return {std::max(1, shard), std::max(1, shards)};
 }
 
+// Pending, as the spec of a share lists them.
+std::vector<IndexRow> cells_of_spec(const fs::path& out, const fs::path& share) {
+  const fs::path path = share / kSpecFile;
+  const std::vector<CampaignCell> cells = parse_campaign(read_spec(path.string()), path.string());
+  const auto [shard, shards] = share_of(out, share);
+  std::vector<IndexRow> expected;
+  for (int k = shard - 1; k < static_cast<int>(cells.size()); k += shards)
+    expected.push_back(pending_row(cells[static_cast<std::size_t>(k)], k + 1));
+  return expected;
+}
+
+bool is_same_cell(const IndexRow& a, const IndexRow& b) {
+  const auto key = [](const IndexRow& row) {
+    return std::tie(row.cell, row.number, row.run_id, row.round, row.arguments, row.label);
+  };
+  return key(a) == key(b);
+}
+
+// In words; empty: there is none.
+std::string find_other_cell(const std::vector<IndexRow>& rows, const std::vector<IndexRow>& expected) {
+  const auto is_of_spec = [](const IndexRow& row) { return row.number > 0; };
+  if (std::ranges::count_if(rows, is_of_spec) != std::ssize(expected))
+    return "; it has another number of cells";
+  for (std::size_t k = 0; k < expected.size(); ++k)
+    if (!is_same_cell(rows[k], expected[k]))
+      return "; line " + std::to_string(k + 2) + " is not cell " + std::to_string(expected[k].number) +
+             " of it";
+  return {};
+}
+
 // The index has the cells of its spec, numbered as that has them.
 void check_spec(const fs::path& out, const fs::path& share, const std::vector<IndexRow>& rows,
                 CheckList& list) {
-  std::string wrong;
-  try {
-    const fs::path path = share / kSpecFile;
-    const std::vector<CampaignCell> cells = parse_campaign(read_spec(path.string()), path.string());
-    const auto [shard, shards] = share_of(out, share);
-    std::vector<IndexRow> expected;
-    for (int k = shard - 1; k < static_cast<int>(cells.size()); k += shards)
-      expected.push_back(pending_row(cells[static_cast<std::size_t>(k)], k + 1));
-    const auto is_of_spec = [](const IndexRow& row) { return row.number > 0; };
-    if (std::ranges::count_if(rows, is_of_spec) != std::ssize(expected))
-      wrong = "; it has another number of cells";
-    for (std::size_t k = 0; k < expected.size() && wrong.empty(); ++k)
-      if (rows[k].cell != expected[k].cell || rows[k].number != expected[k].number ||
-          rows[k].run_id != expected[k].run_id || rows[k].round != expected[k].round ||
-          rows[k].arguments != expected[k].arguments || rows[k].label != expected[k].label)
-        wrong = "; line " + std::to_string(k + 2) + " is not cell " + std::to_string(expected[k].number) +
-                " of it";
-  } catch (const std::invalid_argument& error) {
-    wrong = std::string("; ") + error.what();
-  }
+  const std::string wrong = wrong_in([&] { return find_other_cell(rows, cells_of_spec(out, share)); });
   list.add(wrong.empty(), (share / kIndexFile).string(), "has the cells of spec.toml" + wrong);
 }
 
 // What may lie beside the index, besides the files that the checksums beside it name.
 std::vector<std::string> others_beside_index(const fs::path& out) {
-  std::vector<std::string> names = {kCellsFolder, kFailedFolder, kShardsFolder, kSlurmFolder};
+  std::vector<std::string> names = {kCellsFolder, kFailedFolder, kShardsFolder, kSlurmFolder, kLockFile};
   if (!fs::exists(out / kMergedTable)) return names;
   const CollectedTables merged(out / kMergedTable);
   for (const fs::path& table : merged.tables()) names.push_back(table.filename().string());
@@ -66,17 +79,12 @@ std::vector<std::string> others_beside_index(const fs::path& out) {
 }
 
 void read_share(const fs::path& out, const fs::path& share, Rows& rows, CheckList& list) {
-  // A share that was killed leaves its lock, also where other shares have done its cells since.
+  // One that was killed leaves its lock, a share also where other shares have done its cells since. What is to do is pending.
   const std::vector<std::string> others =
       share == out ? others_beside_index(out) : std::vector<std::string>{kLockFile};
   if (!check_files(share, {kIndexFile, kSpecFile}, others, list)) return;
   std::vector<IndexRow> found;
-  std::string error;
-  try {
-    found = read_index(share / kIndexFile);
-  } catch (const std::invalid_argument& wrong) {
-    error = std::string("; ") + wrong.what();
-  }
+  const std::string error = wrong_in([&] { found = read_index(share / kIndexFile); });
   list.add(error.empty(), (share / kIndexFile).string(), "readable" + error);
   if (!error.empty()) return;
   check_spec(out, share, found, list);

@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "harness/base/refusals.h"
 #include "harness/commands/expected_rows.h"
 #include "harness/commands/verify_campaign.h"
 #include "harness/commands/verify_problem_file.h"
@@ -23,14 +24,13 @@ bool is_problem_file(const fs::path& name) { return name.extension() == ".h5" &&
 // The manifest, where it can be read. One beside checksums is of a program that says files and schema.
 std::optional<StoredManifest> check_manifest(const fs::path& directory, bool has_checksums, CheckList& list) {
   std::optional<StoredManifest> manifest;
-  std::string error;
-  try {
+  const std::string error = wrong_in([&] {
     manifest = read_manifest(directory / kManifestFile);
-    if (has_checksums && manifest->files.empty()) error += "; it has no files";
-    if (has_checksums && manifest->steps_schema.empty()) error += "; it has no steps_schema";
-  } catch (const std::invalid_argument& wrong) {
-    error = std::string("; ") + wrong.what();
-  }
+    std::string missing;
+    if (has_checksums && manifest->files.empty()) missing += "; it has no files";
+    if (has_checksums && manifest->steps_schema.empty()) missing += "; it has no steps_schema";
+    return missing;
+  });
   list.add(error.empty(), (directory / kManifestFile).string(), "readable" + error);
   return manifest;
 }
@@ -38,12 +38,8 @@ std::optional<StoredManifest> check_manifest(const fs::path& directory, bool has
 void check_state(const fs::path& directory, const StoredManifest& manifest, CheckList& list) {
   std::string why = manifest.state == "complete" ? "" : "; incomplete: allowed is complete";
   if (manifest.state == "running") {
-    why = "; incomplete: it was killed";
-    try {
-      check_not_locked(directory);
-    } catch (const std::invalid_argument&) {
-      why = "; incomplete: it is still running";
-    }
+    const bool is_locked = !wrong_in([&] { check_not_locked(directory); }).empty();
+    why = is_locked ? "; incomplete: it is still running" : "; incomplete: it was killed";
   }
   list.add(why.empty(), (directory / kManifestFile).string(), "state " + manifest.state + why);
 }
@@ -60,10 +56,10 @@ void check_listed_files(const fs::path& directory, const std::map<std::string, s
 }
 
 void check_other_files(const fs::path& directory, const std::map<std::string, std::string>& sums,
-                       const std::vector<std::string>& folders, CheckList& list) {
+                       const std::vector<std::string>& besides, CheckList& list) {
   std::string others;
   for (const std::string& name : names_in(directory))
-    if (!sums.contains(name) && name != kChecksumsFile && std::ranges::count(folders, name) == 0)
+    if (!sums.contains(name) && name != kChecksumsFile && std::ranges::count(besides, name) == 0)
       others += "; " + name + " is not of this run";
   list.add(others.empty(), (directory / kChecksumsFile).string(),
            "names every file of the directory" + others);
@@ -73,14 +69,13 @@ void check_other_files(const fs::path& directory, const std::map<std::string, st
 std::optional<std::map<std::string, std::string>> check_list_of_files(
     const fs::path& directory, const std::vector<std::string>& required, CheckList& list) {
   std::optional<std::map<std::string, std::string>> sums;
-  std::string error;
-  try {
+  const std::string error = wrong_in([&] {
     sums = read_checksums(directory);
+    std::string missing;
     for (const std::string& name : required)
-      if (!sums->contains(name)) error += "; " + name + " is not in it";
-  } catch (const std::invalid_argument& wrong) {
-    error = std::string("; ") + wrong.what();
-  }
+      if (!sums->contains(name)) missing += "; " + name + " is not in it";
+    return missing;
+  });
   list.add(error.empty(), (directory / kChecksumsFile).string(), "readable" + error);
   return sums;
 }
@@ -110,12 +105,12 @@ std::vector<std::string> names_in(const fs::path& directory) {
 }
 
 bool check_files(const fs::path& directory, const std::vector<std::string>& required,
-                 const std::vector<std::string>& folders, CheckList& list) {
+                 const std::vector<std::string>& besides, CheckList& list) {
   const int before = list.failures();
   const auto sums = check_list_of_files(directory, required, list);
   if (sums) {
     check_listed_files(directory, *sums, list);
-    check_other_files(directory, *sums, folders, list);
+    check_other_files(directory, *sums, besides, list);
   }
   if (list.failures() == before) return true;
   CheckList::note(directory.string(),

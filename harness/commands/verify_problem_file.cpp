@@ -9,6 +9,7 @@
 
 #include "harness/base/hash.h"
 #include "harness/base/numbers.h"
+#include "harness/base/refusals.h"
 #include "harness/base/value_spans.h"
 #include "harness/commands/stored_partition.h"
 #include "harness/experiment/algorithms.h"
@@ -73,11 +74,7 @@ void check_outside_parts(const StoredPartition& partition, const std::string& co
     error = "; fingerprint of the files = '" + fingerprint + "', allowed: 16 hexadecimal digits";
   if (!partition.parent_of_part.empty())
     error += "; a tree of parts, allowed: one level, as parts from files are";
-  try {
-    read_stored_refiner(partition);
-  } catch (const std::invalid_argument& wrong) {
-    error += std::string("; ") + wrong.what();
-  }
+  error += wrong_in([&] { read_stored_refiner(partition); });
   list.add(error.empty(), subject, counted + "; from files, refiner " + partition.refiner + error);
   if (!error.empty()) return;
   if (fingerprint.starts_with("steps-") || partition.refiner != "none")
@@ -89,15 +86,11 @@ void check_outside_parts(const StoredPartition& partition, const std::string& co
 // Parts that hang on the steps before, which no file holds, are counted only. Whether there are such.
 bool check_history(const StoredPartition& partition, const std::string& counted, const std::string& subject,
                    CheckList& list) {
-  std::string origin, error;
-  try {
-    origin = to_string(read_origin(partition));
-  } catch (const std::invalid_argument& wrong) {
-    error = wrong.what();
-  }
+  std::string origin;
+  const std::string error = wrong_in([&] { origin = to_string(read_origin(partition)); });
   if (origin == to_string(PartitionOrigin::fresh)) return false;
   list.add(error.empty(), subject,
-           counted + "; " + (error.empty() ? origin + " from the step before" : error));
+           counted + (error.empty() ? "; " + origin + " from the step before" : error));
   return true;
 }
 
@@ -157,13 +150,10 @@ std::string find_other_set(const StepProblem& problem, const FrictionModelEntry&
 
 void check_friction_model(const ProblemFile& file, const std::string& subject, CheckList& list) {
   const std::string& model = file.friction_model;
-  std::string error;
-  try {
+  const std::string error = wrong_in([&] {
     const Algorithm named = read_named("friction", model, {{"friction-force-n", "0"}});
-    error = find_other_set(file.problem, friction_model(named.name));
-  } catch (const std::invalid_argument& wrong) {
-    error = std::string("; ") + wrong.what();
-  }
+    return find_other_set(file.problem, friction_model(named.name));
+  });
   list.add(error.empty(), subject, "friction_model " + model + error);
 }
 

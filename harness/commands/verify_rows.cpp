@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/base/names.h"
+#include "harness/base/refusals.h"
 #include "harness/commands/expected_rows.h"
 #include "harness/commands/verify_file_rows.h"
 #include "harness/commands/verify_row_groups.h"
@@ -43,15 +44,14 @@ std::string first_difference(const std::vector<std::string>& found, const std::v
 std::optional<StepsTable> check_header(const fs::path& path, const StoredManifest& manifest,
                                        CheckList& list) {
   std::optional<StepsTable> table;
-  std::string error;
-  try {
+  const std::string error = wrong_in([&] {
     table.emplace(path);
-    error = first_difference(table->header(), manifest.columns);
-    if (error.empty() && manifest.steps_schema == kStepsSchema && !are_columns_of_schema(table->header()))
-      error = first_difference(table->header(), header_of_program());
-  } catch (const std::invalid_argument& wrong) {
-    error = std::string("; ") + wrong.what();
-  }
+    std::string difference = first_difference(table->header(), manifest.columns);
+    if (difference.empty() && manifest.steps_schema == kStepsSchema &&
+        !are_columns_of_schema(table->header()))
+      difference = first_difference(table->header(), header_of_program());
+    return difference;
+  });
   list.add(error.empty(), path.string(), "header and lines of its schema" + error);
   if (!error.empty()) table.reset();
   return table;
@@ -163,12 +163,7 @@ void check_limits(const StepsTable& table, const std::string& subject, CheckList
 std::optional<ExpectedRows> check_options(const fs::path& directory, const StoredManifest& manifest,
                                           CheckList& list) {
   std::optional<ExpectedRows> expected;
-  std::string error;
-  try {
-    expected.emplace(manifest);
-  } catch (const std::invalid_argument& wrong) {
-    error = std::string("; ") + wrong.what();
-  }
+  const std::string error = wrong_in([&] { expected.emplace(manifest); });
   list.add(expected.has_value(), (directory / kManifestFile).string(), "options of a run" + error);
   return expected;
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "harness/base/names.h"
+#include "harness/base/refusals.h"
 #include "harness/experiment/chosen_kernel.h"
 #include "harness/experiment/friction.h"
 #include "harness/world/ode_baselines.h"
@@ -50,10 +51,6 @@ std::vector<AlgorithmKind> make_kinds() {
 
 bool is_solver(const std::string& option) { return option == "solver" || option == "advance"; }
 
-bool has_parameter(const AlgorithmEntry& entry, const std::string& parameter) {
-  return std::ranges::count(entry.parameters, parameter, &Parameter::name) > 0;
-}
-
 // What a list may name at once. Keyword rows of one table.
 struct Keywords {
   const char* option;
@@ -89,6 +86,10 @@ std::vector<std::string> expanded(const std::string& option, const std::string& 
       std::ranges::find(keywords(), option, [](const Keywords& k) { return std::string(k.option); });
   std::vector<std::string> items;
   for (const std::string& item : split_list(text)) {
+    if (const std::string name = algorithm_name(item);
+        row != keywords().end() && item != name && (name == "paper" || name == "all"))
+      throw std::invalid_argument("--" + option + ": '" + item + "': " + name +
+                                  " stands for several names and takes no parameters; give them as options");
     if (row != keywords().end() && item == "paper") {
       std::ranges::copy(row->paper, std::back_inserter(items));
     } else if (row != keywords().end() && item == "all") {
@@ -195,7 +196,9 @@ Algorithm read_named(const std::string& option, const std::string& text, const C
   const std::vector<Parameter> parameters = parameters_of(option, algorithm_name(text));
   Algorithm algorithm = read_algorithm("--" + option, text, parameters, common, owners_of);
   if (const ContentReader content = content_of(option, algorithm.name))
-    algorithm.text = text_with_content(text, parameters, content(algorithm.settings));
+    algorithm.text = in_context("--" + option + " " + algorithm.name, [&] {
+      return text_with_content(text, parameters, content(algorithm.settings));
+    });
   return algorithm;
 }
 
@@ -215,9 +218,7 @@ std::vector<Algorithm> read_list(const std::string& option, const std::string& t
   return list;
 }
 
-const SceneEntry& scene_row(const Algorithm& scene) {
-  return *std::ranges::find_if(scenes(), [&](const SceneEntry& row) { return row.name == scene.name; });
-}
+const SceneEntry& scene_row(const Algorithm& scene) { return *find_row(scenes(), scene.name); }
 
 bool names_groups(const Algorithm& scene) {
   const auto names = scene_row(scene).names_groups;

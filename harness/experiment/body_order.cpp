@@ -6,6 +6,7 @@
 #include "harness/base/dice.h"
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
+#include "harness/base/refusals.h"
 #include "partition/partitioner.h"
 
 namespace cleave {
@@ -31,11 +32,7 @@ void check_each_once(const std::string& option, const PartFile& file) {
 }
 
 void read_files(const std::string& option, const std::string& path, BodyOrder& order) {
-  try {
-    order.files = std::make_shared<const PartFiles>(path);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(option + ": " + error.what());
-  }
+  order.files = in_context(option, [&] { return std::make_shared<const PartFiles>(path); });
   order.files->visit([&](const PartFile& file) { check_each_once(option, file); });
   order.text = "file@" + order.files->fingerprint();
 }

@@ -12,9 +12,7 @@ namespace {
 
 // Of the kernels that can be chosen all have the same parameters, but for the arity of a tree, which partitioner auto has made.
 std::vector<Parameter> kernel_parameters() {
-  const auto row = std::ranges::find(kernel_table(), std::string_view(cost_kernel_names().front()),
-                                     [](const KernelRow& kernel) { return std::string_view(kernel.name); });
-  return row->parameters;
+  return find_row(kernel_table(), cost_kernel_names().front())->parameters;
 }
 
 std::string pair_name(const std::string& strategy, std::string_view kernel) {

@@ -56,7 +56,7 @@ class Combination {
  public:
   // Where the solver ignores parts partitioner and refiner are not made. context: what solvers that are ODE
   // itself read the step from, and partitioners the positions. stop, where given: once true no solve begins and
-  // the one at hand ends with SolveStopped, out of every function below. Both must outlive the combination.
+  // the one at hand ends with Stopped, out of every function below. Both must outlive the combination.
   Combination(const Algorithm& partitioner, const Algorithm& refiner, const Algorithm& solver,
               const RunOptions& options, const StepContext& context, const std::atomic<bool>* stop = nullptr);
 

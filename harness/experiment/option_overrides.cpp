@@ -66,6 +66,24 @@ std::string why_unable(const Algorithm& partitioner, const RunOptions& options) 
   return {};
 }
 
+// The option that joins a strategy and a kernel that are no pair.
+void check_goes_together(const SolverHalves& halves, const Algorithm& solver, const CommonValues& given) {
+  const std::vector<std::string> names = names_for("solver");
+  if (std::ranges::count(names, halves.strategy + ":" + halves.kernel) > 0) return;
+  const bool is_kernel = given.contains("kernel");
+  std::vector<std::string> allowed;
+  for (const std::string& name : names) {
+    const SolverHalves other = solver_halves(name);
+    if (name == other.strategy + ":" + other.kernel &&
+        (is_kernel ? other.strategy == halves.strategy : other.kernel == halves.kernel))
+      allowed.push_back(is_kernel ? other.kernel : other.strategy);
+  }
+  reject(is_kernel ? "kernel" : "strategy",
+         "'" + (is_kernel ? halves.kernel : halves.strategy) + "' does not go with " +
+             (is_kernel ? "strategy " + halves.strategy : "kernel " + halves.kernel) + " (--solver " +
+             solver.text + "); allowed: " + joined(allowed));
+}
+
 }  // namespace
 
 void override_solvers(const std::map<std::string, std::string>& given, RunOptions& options) {
@@ -80,6 +98,7 @@ void override_solvers(const std::map<std::string, std::string>& given, RunOption
              "'" + solver.name + "' has neither strategy nor kernel; leave out --strategy and --kernel");
     if (!options.strategy.empty()) halves.strategy = options.strategy;
     if (!options.kernel.empty()) halves.kernel = options.kernel;
+    check_goes_together(halves, solver, given);
     changed.push_back(halves.strategy + ":" + halves.kernel + solver.text.substr(solver.name.size()));
   }
   options.solvers = read_list("solver", joined(changed, ","), options.common);
@@ -89,6 +108,11 @@ void override_objective(RunOptions& options) {
   if (options.objective == Objective::rows) return;
   options.refiners = of_cost("refiner", options.refiners, refiner_of_cost, options.common);
   options.partitioners = of_cost("partitioner", options.partitioners, partitioner_of_cost, options.common);
+  const auto aims_at_cost = [](const Algorithm& algorithm) { return algorithm.name.ends_with(kOfCost); };
+  if (std::ranges::none_of(options.refiners, aims_at_cost) &&
+      std::ranges::none_of(options.partitioners, aims_at_cost))
+    options.left_out.push_back(
+        "--objective cost changes nothing: no partitioner or refiner of this run has an objective");
 }
 
 void leave_out_of_all(const std::function<std::string(const Algorithm& partitioner)>& why,

@@ -63,20 +63,34 @@ void append(const std::vector<Algorithm>& more, std::vector<const Algorithm*>& t
   for (const Algorithm& algorithm : more) to.push_back(&algorithm);
 }
 
-// A value that nothing in the run reads would do nothing.
+// A value that nothing in the run reads would do nothing. idle: what is named and has no part in the run.
+void check_is_read(const std::string& name, const std::vector<const Algorithm*>& all,
+                   const std::vector<const Algorithm*>& idle = {}) {
+  std::string own;
+  for (const Algorithm* algorithm : all) {
+    if (!algorithm->settings.has(name)) continue;
+    if (!names_parameter(algorithm->text, name)) return;
+    own += (own.empty() ? "" : ", ") + algorithm->text;
+  }
+  const auto has = [&](const Algorithm* algorithm) { return algorithm->settings.has(name); };
+  if (const auto found = std::ranges::find_if(idle, has); own.empty() && found != idle.end())
+    reject(name, "is a parameter of " + (*found)->name + ", and no solver of this run splits bodies");
+  if (own.empty()) reject(name, "is a parameter of " + owners_of(name) + "; nothing in this run has it");
+  reject(name, "would do nothing, as all that have it say their own: " + own);
+}
+
 void check_owned(const RunOptions& options, const std::set<std::string>& stored, bool with_world) {
-  std::vector<const Algorithm*> all;
+  std::vector<const Algorithm*> all, idle;
   append(options.solvers, all);
   if (with_world && options.mode == RunMode::lockstep) all.push_back(&options.advance);
-  if (std::ranges::any_of(all, [](const Algorithm* solver) { return uses_parts(*solver); })) {
-    append(options.partitioners, all);
-    append(options.refiners, all);
-  }
+  const bool splits = std::ranges::any_of(all, [](const Algorithm* solver) { return uses_parts(*solver); });
+  append(options.partitioners, splits ? all : idle);
+  append(options.refiners, splits ? all : idle);
   if (with_world) all.push_back(&options.friction);
   for (const auto& [name, value] : options.common) {
-    const auto reads = [&name = name](const Algorithm* algorithm) { return algorithm->settings.has(name); };
-    if (find_common_parameter(name) != nullptr && !stored.contains(name) && std::ranges::none_of(all, reads))
-      reject(name, "is a parameter of " + owners_of(name) + "; nothing in this run has it");
+    if (stored.contains(name)) continue;
+    if (find_common_parameter(name) != nullptr) check_is_read(name, all, idle);
+    if (find_common_parameter(name) == nullptr && with_world) check_is_read(name, {&options.scene});
   }
 }
 

@@ -200,7 +200,7 @@ std::vector<OptionSpec> experiment_options() {
       seed(),
       text({"out", kAbout, kEverywhere, kChangesNoRow}, "DIR", "directory for steps.csv and manifest.json",
            at(&RunOptions::out)),
-      flag({"force", kAbout, kEverywhere, kChangesNoRow}, "overwrite the steps.csv that --out holds",
+      flag({"force", kAbout, kEverywhere, kChangesNoRow}, "take away what an earlier command left in --out",
            at(&RunOptions::force)),
       flag({"record-motion", kAbout, kRunOnly, kChangesNoRow},
            "write bodies, graph and parts of every step to motion.h5, for pictures and the viewer",

@@ -1,11 +1,13 @@
 #include "harness/experiment/repeated_options.h"
 
 #include <algorithm>
+#include <array>
 #include <initializer_list>
 #include <stdexcept>
 
 #include "harness/base/names.h"
 #include "harness/base/numbers.h"
+#include "partition/calibration.h"
 
 namespace cleave {
 namespace {
@@ -39,15 +41,22 @@ std::vector<std::string> scene_parameters(const Given& stored) {
   throw std::invalid_argument("option '" + name + "' is unknown" + nearest_question(name, known));
 }
 
-// Whose row carries a content's hash, as file@0123456789abcdef: what a manifest knows is not where it lay.
+// The first item of an option's list that carries a content's hash, as file@0123456789abcdef: what a manifest knows is not where it
+// lay. Empty: there is none.
+std::string item_of_file(const Given& options, const std::string& option) {
+  for (const std::string& item : split_list(value_of(options, option)))
+    if (!fingerprint_of(item).empty()) return item;
+  return {};
+}
+
+constexpr std::array kNameFiles = {"scene", "partitioner", "refiner", "solver", "body-order"};
+
 void check_can_be_found(const Given& taken) {
-  for (const char* option : {"scene", "partitioner", "refiner", "solver", "body-order"})
-    for (const std::string& item : split_list(value_of(taken, option))) {
-      if (!fingerprint_of(item).empty())
-        throw std::invalid_argument("option " + std::string(option) + ": " + item +
-                                    " is known by its content, not by its file; give --" + option +
-                                    " beside --config");
-    }
+  for (const char* option : kNameFiles)
+    if (const std::string item = item_of_file(taken, option); !item.empty())
+      throw std::invalid_argument("option " + std::string(option) + ": " + item +
+                                  " is known by its content, not by its file; give --" + option +
+                                  " beside --config");
 }
 
 // A manifest names every option of the table; the command takes those it declares. A flag is given or not.
@@ -79,6 +88,15 @@ bool is_another_scene(const Given& given, const Given& stored) {
 }
 
 }  // namespace
+
+std::vector<std::string> options_of_files(const Given& stored) {
+  std::vector<std::string> options;
+  for (const char* option : kNameFiles)
+    if (!item_of_file(stored, option).empty()) options.emplace_back(option);
+  const std::string calibration = value_of(stored, "calibration");
+  if (!calibration.empty() && !is_known_calibration(calibration)) options.emplace_back("calibration");
+  return options;
+}
 
 RepeatedOptions repeated_options(const Given& stored, const Given& given, bool CommandSet::*command,
                                  const std::vector<std::string>& own) {

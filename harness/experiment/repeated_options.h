@@ -29,4 +29,8 @@ RepeatedOptions repeated_options(const std::map<std::string, std::string>& store
                                  const std::map<std::string, std::string>& given, bool CommandSet::*command,
                                  const std::vector<std::string>& own);
 
+// The options of a run that a file decided of which they tell the content alone, by a fingerprint: whoever repeats the run has to
+// name it again.
+std::vector<std::string> options_of_files(const std::map<std::string, std::string>& stored);
+
 }  // namespace cleave

@@ -93,7 +93,7 @@ std::string RunSummary::text() const {
         100 * t_s_far_ms / t_s_apart_total_ms, kFarNs);
   // Where no world moved (replay) there is no velocity to compare with.
   const bool simulated = steps > 0;
-  lines += simulated ? format("%d steps, ", steps) : format("%d problems, ", measured_steps);
+  lines += simulated ? format("%lld steps, ", steps) : format("%d problems, ", measured_steps);
   lines += format("%d rows: %d ok, %d not ok", rows, rows_ok, rows - rows_ok);
   if (rows_with_result > 0) lines += format("; worst residual %.3g m/s", worst_residual_m_per_s);
   if (rows_with_result > 0 && simulated)

@@ -18,13 +18,13 @@ struct RunSummary {
 
   int rows = 0;
   int rows_ok = 0;
-  int steps = 0;           // simulated, over all worlds
+  long long steps = 0;     // simulated, over all worlds
   int measured_steps = 0;  // or problems replayed
   int measured_with_contacts = 0;
   int inexact_advances = 0;  // steps advanced by a solution outside the judge's limit
   int stopped_worlds = 0;    // worlds without a solution, or with velocities or positions that are no numbers
   int unconverged_bounds = 0;  // steps on which the bounds of box-converged did not settle
-  int rows_with_result = 0;  // whose residuals are in the two below
+  int rows_with_result = 0;    // whose residuals are in the two below
   double worst_residual_m_per_s = 0;
   double worst_velocity_spread_m_per_s = 0;
   double t_s_total_ms = 0;  // over all rows that say how long their solve waited for a core

@@ -27,8 +27,7 @@ bool is_finite(const OdeWorld& world) {
 // None where one has overflown, in a coordinate that no energy tells of.
 std::vector<double> known_positions(const OdeWorld& world) {
   std::vector<double> positions_m = world.positions_m();
-  const bool are_finite = std::ranges::all_of(positions_m, [](double x) { return std::isfinite(x); });
-  return are_finite ? positions_m : std::vector<double>();
+  return all_finite(positions_m) ? positions_m : std::vector<double>();
 }
 
 std::string why_stopped(int step, const Outcome& advance) {
@@ -127,7 +126,7 @@ RunSummary Simulation::run(const RowSink& write, const Progress& progress) {
   Stopwatch watch;
   try {
     run_worlds(write, progress);
-  } catch (const SolveStopped&) {
+  } catch (const Stopped&) {
     // The rows of the step at hand are not all there, so none is written.
   }
   summary_.wall_s = watch.lap_ms() / 1000;
@@ -160,9 +159,9 @@ bool Simulation::is_measured(int step) const {
   return std::ranges::binary_search(options_.at, step);
 }
 
-int Simulation::total_steps() const {
-  return options_.mode == RunMode::lockstep ? options_.steps
-                                            : options_.steps * static_cast<int>(combinations_.size());
+long long Simulation::total_steps() const {
+  const std::size_t worlds = options_.mode == RunMode::lockstep ? 1 : combinations_.size();
+  return static_cast<long long>(worlds) * options_.steps;
 }
 
 // What friction rows may carry is fixed before anyone solves, so that all combinations have the same problem.

@@ -27,7 +27,7 @@ struct ObservedStep {
 
 class Simulation {
  public:
-  using Progress = std::function<void(int steps_done, int steps_total)>;
+  using Progress = std::function<void(long long steps_done, long long steps_total)>;
   // Sees every step whose solves are done, before the world is advanced.
   using Observer = std::function<void(const ObservedStep& step)>;
   // Takes the rows of a measured step when the step is over.
@@ -68,7 +68,7 @@ class Simulation {
                       const RowSink& write);
 
   StepRecord blank_row(int step) const;
-  int total_steps() const;
+  long long total_steps() const;
   bool is_measured(int step) const;
 
   RunOptions options_;

@@ -109,4 +109,10 @@ std::map<std::string, std::string> read_checksum_list(const fs::path& path) {
   return sums;
 }
 
+bool is_as_listed(const fs::path& directory, const std::map<std::string, std::string>& sums,
+                  const std::string& name) {
+  const auto sum = sums.find(name);
+  return sum != sums.end() && sum->second == sha256_of(directory / name);
+}
+
 }  // namespace cleave

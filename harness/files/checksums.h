@@ -29,4 +29,8 @@ std::map<std::string, std::string> read_checksums(const std::filesystem::path& d
 // The same of a list under another name, of files beside it.
 std::map<std::string, std::string> read_checksum_list(const std::filesystem::path& list);
 
+// Whether the file of that name is in these digits by name, and has them.
+bool is_as_listed(const std::filesystem::path& directory, const std::map<std::string, std::string>& sums,
+                  const std::string& name);
+
 }  // namespace cleave

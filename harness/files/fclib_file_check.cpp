@@ -71,8 +71,9 @@ std::vector<MatrixEntry> triplet_entries(const std::string& name, const StoredFc
 FclibMatrix checked_matrix(const std::string& name, const StoredFclibMatrix& stored) {
   if (stored.m < 0) refuse(name + "/m", std::to_string(stored.m), "0 or more");
   if (stored.n < 0) refuse(name + "/n", std::to_string(stored.n), "0 or more");
+  if (stored.nzmax < 0) refuse(name + "/nzmax", std::to_string(stored.nzmax), "0 or more");
   if (stored.nz < kFclibRows) refuse(name + "/nz", std::to_string(stored.nz), "-2 or more");
-  expect_size(name + "/x", stored.x.size(), static_cast<std::size_t>(std::max(stored.nzmax, 0)));
+  expect_size(name + "/x", stored.x.size(), static_cast<std::size_t>(stored.nzmax));
   for (std::size_t k = 0; k < stored.x.size(); ++k)
     if (!std::isfinite(stored.x[k])) refuse(at(name + "/x", k), number_text(stored.x[k]), "finite numbers");
   FclibMatrix matrix{stored.m, stored.n,

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "harness/base/refusals.h"
 #include "harness/files/fclib_file.h"
 #include "harness/files/fclib_file_check.h"
 #include "harness/files/hdf5_reader.h"
@@ -114,15 +115,13 @@ std::string read_packed(const fs::path& path) {
 FclibGlobal read_fclib_file(const fs::path& path) {
   const std::string bytes =
       read_in_child(path.string(), read_limits(path), [&path] { return read_packed(path); });
-  try {
+  return in_context(path.string(), [&] {
     StoredFclib stored;
     Unpacker from(bytes);
     walk(stored, from);
     from.expect_end();
     return checked_fclib(stored);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(path.string() + ": " + error.what());
-  }
+  });
 }
 
 }  // namespace cleave

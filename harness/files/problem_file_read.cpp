@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "harness/base/printable_text.h"
+#include "harness/base/refusals.h"
 #include "harness/files/hdf5_reader.h"
 #include "harness/files/isolated_read.h"
 #include "harness/files/problem_file.h"
@@ -180,11 +181,7 @@ ProblemFile checked_file(const std::string& bytes) {
 ProblemFile read_problem_file(const fs::path& path) {
   const std::string bytes =
       read_in_child(path.string(), read_limits(path), [&path] { return read_packed(path); });
-  try {
-    return checked_file(bytes);
-  } catch (const std::invalid_argument& error) {
-    throw std::invalid_argument(path.string() + ": " + error.what());
-  }
+  return in_context(path.string(), [&] { return checked_file(bytes); });
 }
 
 ProblemFile read_problem_file_aloud(const fs::path& path) {

@@ -62,6 +62,15 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+void rename_part(const fs::path& path) {
+  if (::rename(part_name_of(path).c_str(), path.c_str()) != 0) fail(path, errno);
+}
+
+void sync_folder(const fs::path& path) {
+  if (const Descriptor folder(folder_of(path), O_RDONLY | O_DIRECTORY); folder.is_open() && !folder.sync())
+    fail(path, errno);
+}
+
 }  // namespace
 
 fs::path part_name_of(const fs::path& path) { return path.string() + ".part"; }
@@ -69,9 +78,8 @@ fs::path part_name_of(const fs::path& path) { return path.string() + ".part"; }
 void publish_part_file(const fs::path& path) {
   const fs::path part = part_name_of(path);
   if (const Descriptor file(part, O_RDONLY); !file.is_open() || !file.sync()) fail(path, errno);
-  if (::rename(part.c_str(), path.c_str()) != 0) fail(path, errno);
-  if (const Descriptor folder(folder_of(path), O_RDONLY | O_DIRECTORY); folder.is_open() && !folder.sync())
-    fail(path, errno);
+  rename_part(path);
+  sync_folder(path);
 }
 
 void write_whole_file(const fs::path& path, std::string_view bytes) {
@@ -83,7 +91,9 @@ void write_whole_files(std::span<const NamedBytes> files) {
   std::size_t aside = 0;
   try {
     for (; aside < files.size(); ++aside) write_aside(files[aside]);
-    for (const NamedBytes& named : files) publish_part_file(named.path);
+    for (const NamedBytes& named : files)
+      rename_part(named.path);  // at once: who is killed here leaves the rest aside
+    for (const NamedBytes& named : files) sync_folder(named.path);
   } catch (...) {
     while (aside > 0) ::unlink(part_name_of(files[--aside].path).c_str());
     throw;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "harness/base/numbers.h"
+#include "harness/base/refusals.h"
 #include "harness/base/value_spans.h"
 #include "harness/files/problem_file.h"
 #include "harness/peers/siconos.h"
@@ -14,11 +15,7 @@ namespace cleave {
 namespace {
 
 double error_of(const std::string& path, const StepProblem& problem, std::span<const double> impulse) {
-  try {
-    return siconos_error(problem, impulse);
-  } catch (const std::invalid_argument& refusal) {
-    throw std::invalid_argument(path + ": " + refusal.what());
-  }
+  return in_context(path, [&] { return siconos_error(problem, impulse); });
 }
 
 // One line a stored solution. Velocities are compared with those of the first one, as names sort.
@@ -29,7 +26,8 @@ void print_solutions(const std::string& path) {
                                 ": no solution in it; cleave_peers replay --write-solutions stores them");
   const StoredSolution& first = file.solutions.begin()->second;
   for (const auto& [label, solution] : file.solutions)
-    std::printf("%s,%s,%d,%s,%s,%s\n", path.c_str(), solution.solver.c_str(), file.problem.row_count(),
+    std::printf("%s,%s,%d,%s,%s,%s\n", csv_cell(path).c_str(), csv_cell(solution.solver).c_str(),
+                file.problem.row_count(),
                 number_text(judge(file.problem, solution.impulse).residual_m_per_s).c_str(),
                 number_text(error_of(path, file.problem, solution.impulse)).c_str(),
                 number_text(largest_difference(solution.velocity, first.velocity)).c_str());

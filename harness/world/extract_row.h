@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "solver/step_problem.h"
+#include "solver/row_arrays.h"
 
 namespace cleave {
 
@@ -27,18 +27,9 @@ struct ExtractedRow {
 
 // Room for so many rows: a problem grows to hundreds of megabytes, which are not to be moved on the way.
 inline void reserve_rows(std::size_t rows, StepProblem& problem) {
-  problem.row_body.reserve(2 * rows);
-  problem.jacobian.reserve(12 * rows);
-  problem.rhs.reserve(rows);
-  problem.compliance.reserve(rows);
-  problem.lower.reserve(rows);
-  problem.upper.reserve(rows);
-  problem.row_kind.reserve(rows);
-  problem.friction_row.reserve(rows);
-  problem.friction_coefficient.reserve(rows);
-  problem.row_constraint.reserve(rows);
-  problem.contact_point.reserve(3 * rows);
-  problem.warm_impulse.reserve(rows);
+  visit_row_arrays([&](const char*, auto member, std::size_t width, RowArray kind) {
+    if (kind == RowArray::always) (problem.*member).reserve(width * rows);
+  });
 }
 
 // Appends the row to every row array of the problem and returns its index.

@@ -134,12 +134,13 @@ double Apgd::first_curvature(const PreparedStep& step, std::span<double> v) {
   return std::clamp(std::sqrt(squares / step.row_count()), 1.0, most_curvature_);
 }
 
-// lambda_k+1 from y_k, L doubled until it suits.
+// lambda_k+1 from y_k, L doubled until it suits. An L that is no number ends it too: the residual tells.
 void Apgd::descend(const PreparedStep& step, std::span<double> v) {
   while (true) {
+    check_stop(stop());
     const double length = move(step);
     evaluate(step, v, next_);
-    if (curvature_ >= most_curvature_ || curvature_of_move(step) <= curvature_ * length) return;
+    if (!(curvature_ < most_curvature_) || curvature_of_move(step) <= curvature_ * length) return;
     curvature_ = std::min(2 * curvature_, most_curvature_);
   }
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <span>
 
+#include "harness/base/ceil_div.h"
 #include "solver/gauss_seidel.h"
 #include "solver/group_coloring.h"
 #include "solver/parallel_tasks.h"
@@ -37,7 +38,7 @@ class ColoredGroups {
   void visit_color(const PreparedStep& step, int color, ParallelTasks& tasks, Solution& solution) {
     const std::span<const int> members = coloring_.groups_of(color);
     const int count = static_cast<int>(members.size());
-    tasks.run((count + kTaskGroups - 1) / kTaskGroups, [&](int task) {
+    tasks.run(ceil_div(count, kTaskGroups), [&](int task) {
       const int last = std::min(count, (task + 1) * kTaskGroups);
       for (int i = task * kTaskGroups; i < last; ++i)
         gauss_seidel_visit(step, groups_[members[i]], LaneSlack{}, WithinBounds{step}, solution.impulse,

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "harness/base/stop.h"
 #include "solver/impulse_set.h"
-#include "solver/stop.h"
 
 namespace cleave {
 

@@ -251,7 +251,8 @@ void Lemke::update(Solution& solution) {
   step_.slack(solution.velocity, solution.impulse, slack_);
 }
 
-// The impulses of the free rows so that their slack is zero, by increments until it no longer falls.
+// The impulses of the free rows so that their slack is zero, by increments until it is: where they reach rounding, which lets it
+// rise and fall, the best of all stay.
 void Lemke::solve_free(SolveSummary& summary, Solution& solution) {
   std::vector<int> free;
   for (int r = 0; r < step_.row_count(); ++r)

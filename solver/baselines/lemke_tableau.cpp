@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/stop.h"
+#include "harness/base/stop.h"
 
 namespace cleave {
 namespace {

@@ -10,6 +10,7 @@ void BranchKernel::bind(const PreparedStep& step) {
   changed_all_ = true;
   system_.bind(step, matrix_.cholesky().symbolic().position_of_node());
   x_.resize(6 * static_cast<std::size_t>(step.body_count()));
+  factored_weights_.resize(step.row_count());
 }
 
 void BranchKernel::choose_separators(const PreparedStep& step, const Parts& parts, Stages& stages) {
@@ -35,6 +36,7 @@ void BranchKernel::analyze(const PreparedStep& step, const Parts& parts, Paralle
 void BranchKernel::request_memory(const PreparedStep& step, ParallelTasks& tasks, bool analyzed) {
   MemoryCount memory;
   matrix_.count(memory);
+  if (analyzed) memory.add<double>(1, step.row_count());
   separators_.count(memory);
   substitution_.count(memory);
   for (const FactorTasks* factor : {&local_tasks_, &interface_tasks_}) factor->count(memory);
@@ -80,7 +82,7 @@ void BranchKernel::find_changed(const RowWeights& weights, const RowWork& before
   tasks.run_over(step_->group_chunks(), [&](const Chunk& groups) {
     step_->do_rows(before, groups);
     system_.turn(groups);
-    matrix_.take_weights(weights.d, groups, changed_);
+    matrix_.take_weights(weights.d, groups, factored_weights_, changed_);
   });
   const auto branches = matrix_.cholesky().symbolic().branches();
   for (std::size_t b = 0; b < branches.size(); ++b)

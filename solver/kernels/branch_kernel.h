@@ -70,6 +70,7 @@ class BranchKernel : public Kernel {
   // The last factorisation failed, is not one of this analysis, or had rows turned by blocks.
   bool changed_all_ = true;
   long factored_preparation_ = 0;         // of the step
+  std::vector<double> factored_weights_;  // (m)
   std::vector<char> changed_, factored_;  // by branch
   std::vector<double> x_;                 // (n, 6) by position
 };

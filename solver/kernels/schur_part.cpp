@@ -2,13 +2,14 @@
 
 #include <numeric>
 
+#include "harness/base/ceil_div.h"
 #include "solver/group_products.h"
 #include "solver/linear/dense_block.h"
 
 namespace cleave {
 namespace {
 
-int round_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
+int round_up(int value, int multiple) { return ceil_div(value, multiple) * multiple; }
 
 // An array of zeros whose old values are of no interest.
 void zeros(std::vector<double>& array, std::size_t size) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "harness/base/ceil_div.h"
 #include "solver/linear/dense_panel.h"
 #include "solver/linear/small_cholesky.h"
 
@@ -53,8 +54,8 @@ void solve_diagonal_transpose(const double* diagonal, double* x) {
 
 void DenseCholesky::resize(int size) {
   size_ = size;
-  panels_ = (size + kPanelRows - 1) / kPanelRows;
-  blocks_ = (panels_ + kBlockPanels - 1) / kBlockPanels;
+  panels_ = ceil_div(size, kPanelRows);
+  blocks_ = ceil_div(panels_, kBlockPanels);
   if (offset(panels_) > capacity_) {
     capacity_ = 0;  // until there is memory: a solver that found none may be asked again
     entries_.reset();
@@ -66,8 +67,8 @@ void DenseCholesky::resize(int size) {
 // A schedule has an operation for every three blocks row >= column >= step; it waits for at most three others. Both lists
 // grow as they are filled. Beyond what an int numbers there is no schedule, whatever memory there is.
 void DenseCholesky::count(int size, MemoryCount& memory) {
-  const long panels = (size + long{kPanelRows} - 1) / kPanelRows;
-  const auto blocks = static_cast<std::uint64_t>((panels + kBlockPanels - 1) / kBlockPanels);
+  const long panels = ceil_div(size, kPanelRows);
+  const auto blocks = static_cast<std::uint64_t>(ceil_div(panels, long{kBlockPanels}));
   memory.add<double>(offset(panels));
   memory.add<double>(kPanelRows, panels);
   const std::uint64_t operations = blocks * (blocks + 1) * (blocks + 2) / 6;

@@ -44,7 +44,7 @@ class DenseCholesky {
     }
   }
 
-  // False when a pivot is not positive. Throws SolveStopped at the next block where the solve is to stop.
+  // False when a pivot is not positive. Throws Stopped at the next block where the solve is to stop.
   bool factor(ParallelTasks& tasks);
   void solve(std::span<double> x);  // x (size) <- A^-1 x
 

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "harness/base/stop.h"
+#include "harness/base/value_spans.h"
 #include "solver/cone.h"
-#include "solver/stop.h"
 
 namespace cleave {
 namespace {
@@ -101,10 +102,8 @@ void AlartCurnier::list_blocks(const SolveState& state) {
     block.first_row = r;
     block.row_count = is_contact ? next->row_count : 1;
     block.cone = is_contact ? &*next++ : nullptr;
-    const Vector3d diagonal = block.load(d);
-    const double of_tangents = std::max(diagonal[1], diagonal[2]);
-    block.rho = Vector3d(1 / diagonal[0], 0, 0);
-    for (int k = 1; k < block.row_count; ++k) block.rho[k] = 1 / of_tangents;
+    block.rho.setZero();
+    block.rho.head(block.row_count).setConstant(1 / d[r]);  // d is one number on all rows of a contact
     r += block.row_count;
   }
 }
@@ -221,7 +220,7 @@ bool AlartCurnier::attempt(SolveState& state, std::span<const double> start, lon
     rest_ = error_;
     find_step(state);
     for (int c = 0; c < kCorrections; ++c) correct_step(state);
-    if (!std::ranges::all_of(step_, [](double x) { return std::isfinite(x); })) break;
+    if (!all_finite(step_)) break;
     energies_.push_back(take_step(state, *std::max_element(energies_.begin(), energies_.end())));
     if (energies_.size() > kRememberedEnergies) energies_.pop_front();
   }

@@ -1,9 +1,9 @@
 // The last attempt under Coulomb's law: a semi-smooth Newton method on the law itself, without de Saxce's shift, and without the
 // symmetry that the kernels' factor needs.
 //
-// Of a contact with impulse (n, t), slack (w_n, w_t) and rho_n, rho_t about the inverse of its diagonal, the law is F = 0 with
+// Of a contact with impulse (n, t), slack (w_n, w_t) and rho the inverse of its diagonal, the law is F = 0 with
 //
-//     F_n = n - max(0, n - rho_n w_n),    F_t = t - P_D(t - rho_t w_t),   D = { |t| <= mu max(0, n - rho_n w_n) },
+//     F_n = n - max(0, n - rho w_n),    F_t = t - P_D(t - rho w_t),   D = { |t| <= mu max(0, n - rho w_n) },
 //
 // of any other row F = lambda - clamp(lambda - rho w). With P' the derivative of what is projected, a contact's block of it
 // unsymmetric where it slides, a step solves

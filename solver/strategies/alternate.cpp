@@ -33,7 +33,7 @@ class Alternate : public Strategy {
       // The interface impulses are new: are the interior rows still consistent?
       if (state.find_violations(tolerance) == 0) {
         StageTimer timer(state.tasks.clock(), Stage::refine);
-        state.refine_free(0.1 * tolerance, SolveState::kLastRefinements, true);
+        state.refine_free(0.1 * tolerance, SolveState::kLastRefinements, SolveState::Refining::answer);
         return state.residual() <= state.step->exact_limit_m_per_s();
       }
     }
@@ -93,12 +93,14 @@ class Alternate : public Strategy {
   // interface means.
   bool solve(SolveState& state, bool interior) {
     for (std::size_t r = 0; r < group_.size() && interior; ++r) {
-      if (is_cut(static_cast<int>(r)) && state.row_state[r] == RowState::free) state.row_state[r] = RowState::held;
+      if (is_cut(static_cast<int>(r)) && state.row_state[r] == RowState::free)
+        state.row_state[r] = RowState::held;
     }
     const bool factored = state.factor_free();
     // To less than what counts as a violation: the other side starts from it.
     if (factored)
-      state.refine_free(0.1 * state.violation_tolerance(), SolveState::kSearchRefinements, false);
+      state.refine_free(0.1 * state.violation_tolerance(), SolveState::kSearchRefinements,
+                        SolveState::Refining::search);
     for (RowState& row : state.row_state) {
       if (row == RowState::held) row = RowState::free;
     }

@@ -117,16 +117,16 @@ void ConeBarrier::add_to_right_hand_side(SolveState& state) const {
 }
 
 BarrierCourse ConeBarrier::follow(SolveState& state) {
-  courses_.assign(state.chunk_count(), BarrierCourse{});
+  courses_.assign(state.chunk_count(), ChunkCourse{});
   run_over_contacts(state, [&](const ContactLanes& four, int k, int chunk) {
     const Point& point = point_[k];
     Direction& now = now_[k];
     now.ds = transposed_times(point.w_inverse, to_second_order(four.mu, four.load(state.dlambda))) +
              scaled_gap_[k];
     now.dz = now.q - now.ds;
-    BarrierCourse& course = courses_[chunk];
+    ChunkCourse& course = courses_[chunk];
     const Lanes fastest = inverse_step(point.by, now.ds).max(inverse_step(point.by, now.dz));
-    course.largest_step = std::max(course.largest_step, fastest.maxCoeff());
+    course.inverse_step = std::max(course.inverse_step, fastest.maxCoeff());
     course.product[0] += (four.is_there * dot(point.by.l, point.by.l)).sum();
     course.product[1] += dot(point.by.l, now.q).sum();
     course.product[2] += dot(now.ds, now.dz).sum();

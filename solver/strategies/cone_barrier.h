@@ -80,8 +80,8 @@ class ConeBarrier {
   bool is_kept_ = false;                             // point_ itself is the iterate to come back to
   std::vector<LaneVector> scaled_gap_, compliance_;  // of the iterate that was factored: W^-T gap; C
   std::vector<Direction> now_, before_;
-  std::vector<BarrierCourse> courses_;  // scratch: of the chunks, largest_step its inverse
-  std::vector<double> worst_;           // scratch: of the chunks
+  std::vector<ChunkCourse> courses_;  // scratch
+  std::vector<double> worst_;         // scratch: of the chunks
 };
 
 }  // namespace cleave

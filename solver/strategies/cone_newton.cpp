@@ -62,6 +62,13 @@ Derivative differentiate(double mu, const Vector3d& p) {
   return derivative;
 }
 
+template <class Task>
+void over_rows(SolveState& state, const Task& task) {
+  state.run_over_rows([&](int first, int last, int) {
+    for (int r = first; r < last; ++r) task(r);
+  });
+}
+
 }  // namespace
 
 // Weights of rows with bounds; theta = 0 sets the impulse to its bound. The rows of cones are linearize_cone's.
@@ -114,7 +121,7 @@ bool ConeNewton::find_step(SolveState& state) {
   state.update_velocity();
   if (!state.factor()) return false;
   solve(state);
-  for (std::size_t r = 0; r < wanted_.size(); ++r) state.impulse[r] += state.dlambda[r];
+  over_rows(state, [&](int r) { state.impulse[r] += state.dlambda[r]; });
   return true;
 }
 
@@ -122,7 +129,7 @@ void ConeNewton::solve(SolveState& state) {
   if (has_coulomb_) shift_.begin(state, slack_before_);
   std::ranges::fill(state.f_v, 0.0);
   for (int k = 0; k < kMostSolves; ++k) {
-    for (std::size_t r = 0; r < wanted_.size(); ++r) state.f_r[r] = wanted_[r] - state.slack[r];
+    over_rows(state, [&](int r) { state.f_r[r] = wanted_[r] - state.slack[r]; });
     if (has_coulomb_) shift_.add_to_right_hand_side(state);
     state.solve();
     ++state.summary->refinements;
@@ -147,9 +154,7 @@ double ConeNewton::take_step(SolveState& state) {
   state.update_velocity_and_shift();
   ImpulseSet::Misses after = misses(state);
   for (int k = 0; has_coulomb_ && k < kMostHalvings && !(after.energy < energies_.back()); ++k) {
-    for (std::size_t r = 0; r < wanted_.size(); ++r) {
-      state.impulse[r] = 0.5 * (state.impulse[r] + impulse_before_[r]);
-    }
+    over_rows(state, [&](int r) { state.impulse[r] = 0.5 * (state.impulse[r] + impulse_before_[r]); });
     state.update_velocity_and_shift();
     after = misses(state);
   }

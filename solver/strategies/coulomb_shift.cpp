@@ -39,4 +39,8 @@ double CoulombShift::improve(std::span<const double> wanted) {
   return worst;
 }
 
+void CoulombShift::subtract_change(std::span<const FrictionCone> cones, std::span<double> f_r) const {
+  for (std::size_t k = 0; k < change().size(); ++k) f_r[cones[k].first_row] -= change_[k];
+}
+
 }  // namespace cleave

@@ -13,6 +13,8 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "solver/friction_cone.h"
+
 namespace cleave {
 
 class CoulombShift {
@@ -26,6 +28,9 @@ class CoulombShift {
   std::span<const double> change() const {
     return {change_.data(), static_cast<std::size_t>(change_.size())};
   }
+
+  // f_r of the cones' normal rows -= ds.
+  void subtract_change(std::span<const FrictionCone> cones, std::span<double> f_r) const;
 
   // wanted (cones): the change that the direction of change() leads to. Makes the next change; returns how far the two were
   // apart, m/s, at most.

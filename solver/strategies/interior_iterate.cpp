@@ -75,7 +75,7 @@ void InteriorIterate::update_velocity(SolveState& state, const RowWork& move) {
 
 void InteriorIterate::measure(SolveState& state) {
   error_ =
-      cones_.product_count() > 0 ? state.residual_of_cones() : SolveState::greatest_of(state.chunk_values);
+      cones_.product_count() > 0 ? state.residual_with_shift() : SolveState::greatest_of(state.chunk_values);
 }
 
 bool InteriorIterate::factor(SolveState& state, double delta) {
@@ -122,8 +122,7 @@ void InteriorIterate::choose_target(Aim aim) {
 
 void InteriorIterate::add_cones_to_right_hand_side(SolveState& state) const {
   cones_.add_to_right_hand_side(state);
-  for (std::size_t k = 0; k < shift_.change().size(); ++k)
-    state.f_r[state.step->set().cones()[k].first_row] -= shift_.change()[k];
+  shift_.subtract_change(state.step->set().cones(), state.f_r);
 }
 
 void InteriorIterate::match_shift(SolveState& state, double tolerance, int most) {

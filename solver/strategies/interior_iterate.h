@@ -85,7 +85,7 @@ class InteriorIterate {
   ConeBarrier cones_;
   CoulombShift shift_;
   BarrierCourse course_, kept_course_;  // of the direction
-  std::vector<BarrierCourse> courses_;  // scratch: of the bounds in every chunk
+  std::vector<ChunkCourse> courses_;    // scratch: of the bounds in every chunk
   double target_ = 0;                   // product that Mehrotra's direction aims at
   double error_ = 0;                    // of the present iterate
   bool is_to_be_kept_ = false;          // which is the one to come back to

@@ -17,13 +17,14 @@ double lesser(double a, double b) { return b < a ? b : a; }
 
 }  // namespace
 
-BarrierCourse join_courses(std::span<const BarrierCourse> chunks) {
+BarrierCourse join_courses(std::span<const ChunkCourse> chunks) {
   BarrierCourse course;
-  for (const BarrierCourse& part : chunks) {
-    course.largest_step = std::max(course.largest_step, part.largest_step);
+  double inverse_step = 1;
+  for (const ChunkCourse& part : chunks) {
+    inverse_step = std::max(inverse_step, part.inverse_step);
     for (int power = 0; power < 3; ++power) course.product[power] += part.product[power];
   }
-  course.largest_step = 1 / course.largest_step;
+  course.largest_step = 1 / inverse_step;
   return course;
 }
 
@@ -117,7 +118,7 @@ void IntervalBarrier::aim(SolveState& state, int first, int last, double product
 }
 
 void IntervalBarrier::Side::follow(int first, int last, std::span<const double> dlambda,
-                                   BarrierCourse& course) {
+                                   ChunkCourse& course) {
 #pragma omp simd
   for (int r = first; r < last; ++r) {
     now.ds[r] = is_there[r] * (sign * dlambda[r]) + gap[r];
@@ -136,13 +137,13 @@ void IntervalBarrier::Side::follow(int first, int last, std::span<const double> 
     for (int lane = 0; lane < kLanes; ++lane) visit(r + lane, lane);
   }
   for (int r = whole; r < last; ++r) visit(r, r - whole);
-  course.largest_step = std::max(course.largest_step, *std::max_element(fastest, fastest + kLanes));
+  course.inverse_step = std::max(course.inverse_step, *std::max_element(fastest, fastest + kLanes));
   for (int power = 0; power < 3; ++power)
     course.product[power] += std::accumulate(sum[power], sum[power] + kLanes, 0.0);
 }
 
-BarrierCourse IntervalBarrier::follow(const SolveState& state, int first, int last) {
-  BarrierCourse course;
+ChunkCourse IntervalBarrier::follow(const SolveState& state, int first, int last) {
+  ChunkCourse course;
   for (Side& side : sides()) side.follow(first, last, state.dlambda, course);
   return course;
 }

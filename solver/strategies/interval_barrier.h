@@ -38,8 +38,12 @@ struct BarrierCourse {
   double product[3] = {};
 };
 
-// Of all chunks of rows together; their largest steps are inverses.
-BarrierCourse join_courses(std::span<const BarrierCourse> chunks);
+// The same of the rows of a chunk: the inverse of that step, at least 1, so that variables which do not fall need no infinity.
+struct ChunkCourse {
+  double inverse_step = 1;
+  double product[3] = {};
+};
+BarrierCourse join_courses(std::span<const ChunkCourse> chunks);
 
 class IntervalBarrier {
  public:
@@ -57,8 +61,8 @@ class IntervalBarrier {
   // state.f_r for it.
   void aim(SolveState& state, int first, int last, double product, bool second_order);
   void right_hand_side(SolveState& state, int first, int last) const;  // state.f_r anew
-  // ds and dz from state.dlambda; returns where they lead, largest_step its inverse.
-  BarrierCourse follow(const SolveState& state, int first, int last);
+  // ds and dz from state.dlambda; returns where they lead.
+  ChunkCourse follow(const SolveState& state, int first, int last);
 
   // After swap_directions, of these rows: aims products that a step of `trial` would leave outside of [low, high] back at it,
   // with state.f_r.
@@ -92,7 +96,7 @@ class IntervalBarrier {
     void weigh(int first, int last, std::span<const double> impulse, std::span<double> weight);
     void aim(int first, int last, double product, double share);
     void add_force(int first, int last, std::span<double> f_r) const;
-    void follow(int first, int last, std::span<const double> dlambda, BarrierCourse& course);
+    void follow(int first, int last, std::span<const double> dlambda, ChunkCourse& course);
     void correct(int first, int last, double trial, double low, double high);
     double error(int first, int last, std::span<const double> d, std::span<double> row_error) const;
     void keep(int first, int last);

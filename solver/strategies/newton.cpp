@@ -12,6 +12,7 @@
 // dynamics with contacts", 2014.
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 #include <vector>
 
@@ -46,7 +47,9 @@ class Newton : public Strategy {
       read_impulses(state);
       if (!direction(state)) return false;
       const double step = line_search(state);
-      for (std::size_t c = 0; c < state.velocity.size(); ++c) state.velocity[c] += step * state.dv[c];
+      state.tasks.run_over(state.step->body_chunks(), [&](const Chunk& chunk) {
+        for (int c = 6 * chunk.first; c < 6 * chunk.last; ++c) state.velocity[c] += step * state.dv[c];
+      });
     }
     return false;
   }
@@ -56,10 +59,12 @@ class Newton : public Strategy {
   void read_impulses(SolveState& state) {
     const StepProblem& problem = state.step->problem();
     state.step->jacobian_times(state.velocity, row_velocity_);
-    for (std::size_t r = 0; r < state.impulse.size(); ++r) {
-      const double free = (problem.rhs[r] - row_velocity_[r]) / problem.compliance[r];
-      state.impulse[r] = std::clamp(free, problem.lower[r], problem.upper[r]);
-    }
+    state.run_over_rows([&](int first, int last, int) {
+      for (int r = first; r < last; ++r) {
+        const double free = (problem.rhs[r] - row_velocity_[r]) / problem.compliance[r];
+        state.impulse[r] = std::clamp(free, problem.lower[r], problem.upper[r]);
+      }
+    });
     state.states_from_impulses();
   }
 
@@ -68,7 +73,7 @@ class Newton : public Strategy {
     const double tolerance = state.violation_tolerance();
     if (state.row_state == last_state_) {
       if (!state.factor_free()) return false;
-      state.refine_free(0.1 * tolerance, kMostRefinements, true);
+      state.refine_free(0.1 * tolerance, kMostRefinements, SolveState::Refining::answer);
       if (state.find_violations(tolerance) == 0) return state.residual() <= state.step->exact_limit_m_per_s();
     }
     last_state_ = state.row_state;
@@ -78,66 +83,106 @@ class Newton : public Strategy {
   // Newton direction dv from the gradient at v.
   bool direction(SolveState& state) {
     const StepProblem& problem = state.step->problem();
-    for (std::size_t r = 0; r < state.impulse.size(); ++r) {
-      state.weight[r] = state.row_state[r] == RowState::free ? 1 / problem.compliance[r] : 0.0;
-    }
-    if (!state.factor()) return false;
-    std::fill(state.f_r.begin(), state.f_r.end(), 0.0);
-    for (std::size_t i = 0; i < state.velocity.size() / 6; ++i) {
-      for (int row = 0; row < 6; ++row) {
-        double sum = 0;
-        for (int c = 0; c < 6; ++c) {
-          sum += problem.mass[36 * i + 6 * row + c] *
-                 (problem.free_velocity[6 * i + c] - state.velocity[6 * i + c]);
-        }
-        state.f_v[6 * i + row] = sum;
+    const auto weigh = [&](int first, int last, int) {
+      for (int r = first; r < last; ++r) {
+        state.weight[r] = state.row_state[r] == RowState::free ? 1 / problem.compliance[r] : 0.0;
       }
-    }
+    };
+    if (!state.factor(std::cref(weigh))) return false;
+    std::fill(state.f_r.begin(), state.f_r.end(), 0.0);
+    state.tasks.run_over(state.step->body_chunks(), [&](const Chunk& chunk) {
+      for (int body = chunk.first; body < chunk.last; ++body) find_momentum(state, body);
+    });
     state.step->add_jacobian_transpose(state.impulse, state.f_v);
     state.solve();
     return true;
   }
 
-  // The step at which the slope of the energy along dv is zero.
-  double line_search(SolveState& state) {
+  // M (v0 - v) of a body, into f_v.
+  static void find_momentum(SolveState& state, int body) {
     const StepProblem& problem = state.step->problem();
+    const double* mass = problem.mass.data() + 36L * body;
+    for (int row = 0; row < 6; ++row) {
+      double sum = 0;
+      for (int c = 0; c < 6; ++c) {
+        sum += mass[6 * row + c] * (problem.free_velocity[6L * body + c] - state.velocity[6L * body + c]);
+      }
+      state.f_v[6L * body + row] = sum;
+    }
+  }
+
+  // The step at which the slope of the energy along dv is zero: slope(t) = slope + t rate, where every row enters with its
+  // present piece and changes the rate at its breakpoints. Most of these lie beyond the zero, and are never put in order.
+  double line_search(SolveState& state) {
     state.step->jacobian_times(state.dv, row_step_);
-    // slope(t) = constant + t * rate; rows enter with their present piece and change it at their breakpoints.
-    double constant = 0, rate = 0;
+    breakpoints_of_chunk_.resize(state.chunk_count());
+    state.run_over_rows([&](int first, int last, int chunk) {
+      list_breakpoints(state.step->problem(), first, last, breakpoints_of_chunk_[chunk]);
+    });
+    breakpoints_.clear();
+    for (const std::vector<Breakpoint>& found : breakpoints_of_chunk_)
+      breakpoints_.insert(breakpoints_.end(), found.begin(), found.end());
+    return find_zero(slope_at_start(state));
+  }
+
+  struct Slope {
+    double slope = 0, rate = 0;
+  };
+  using Breakpoint = std::pair<double, double>;  // t, change of the rate
+
+  Slope slope_at_start(const SolveState& state) const {
+    const StepProblem& problem = state.step->problem();
+    Slope sum;
     for (std::size_t i = 0; i < state.dv.size() / 6; ++i) {
       for (int k = 0; k < 36; ++k) {
         const double left = state.dv[6 * i + k / 6] * problem.mass[36 * i + k];
-        constant += left * (state.velocity[6 * i + k % 6] - problem.free_velocity[6 * i + k % 6]);
-        rate += left * state.dv[6 * i + k % 6];
+        sum.slope += left * (state.velocity[6 * i + k % 6] - problem.free_velocity[6 * i + k % 6]);
+        sum.rate += left * state.dv[6 * i + k % 6];
       }
     }
-    breakpoints_.clear();
     for (std::size_t r = 0; r < state.impulse.size(); ++r) {
+      sum.slope -= row_step_[r] * state.impulse[r];
+      if (state.row_state[r] == RowState::free) sum.rate += curvature(problem, static_cast<int>(r));
+    }
+    return sum;
+  }
+
+  double curvature(const StepProblem& problem, int row) const {
+    return row_step_[row] * row_step_[row] / problem.compliance[row];
+  }
+
+  void list_breakpoints(const StepProblem& problem, int first, int last,
+                        std::vector<Breakpoint>& found) const {
+    found.clear();
+    for (int r = first; r < last; ++r) {
       const double c = problem.compliance[r], dw = row_step_[r];
-      constant -= dw * state.impulse[r];
-      const double curvature = dw * dw / c;
-      if (state.row_state[r] == RowState::free) rate += curvature;
       if (dw == 0 || problem.lower[r] == problem.upper[r]) continue;
       const double at_lower = (problem.rhs[r] - row_velocity_[r] - c * problem.lower[r]) / dw;
       const double at_upper = (problem.rhs[r] - row_velocity_[r] - c * problem.upper[r]) / dw;
       const double enter = std::min(at_lower, at_upper), leave = std::max(at_lower, at_upper);
-      if (enter > 0 && std::isfinite(enter)) breakpoints_.emplace_back(enter, curvature);
-      if (leave > 0 && std::isfinite(leave)) breakpoints_.emplace_back(leave, -curvature);
+      if (enter > 0 && std::isfinite(enter)) found.emplace_back(enter, curvature(problem, r));
+      if (leave > 0 && std::isfinite(leave)) found.emplace_back(leave, -curvature(problem, r));
     }
-    std::sort(breakpoints_.begin(), breakpoints_.end());
-    double t = 0, slope = constant;
-    for (const auto& [at, change] : breakpoints_) {
-      const double next = slope + rate * (at - t);
-      if (next >= 0) break;
-      slope = next;
-      t = at;
-      rate += change;
+  }
+
+  double find_zero(Slope at) {
+    std::ranges::make_heap(breakpoints_, std::greater{});
+    double t = 0;
+    while (!breakpoints_.empty()) {
+      const auto [next, change] = breakpoints_.front();
+      const double slope = at.slope + at.rate * (next - t);
+      if (slope >= 0) break;
+      at = {slope, at.rate + change};
+      t = next;
+      std::ranges::pop_heap(breakpoints_, std::greater{});
+      breakpoints_.pop_back();
     }
-    return rate > 0 ? t - slope / rate : t;
+    return at.rate > 0 ? t - at.slope / at.rate : t;
   }
 
   std::vector<double> row_velocity_, row_step_, kept_velocity_;
-  std::vector<std::pair<double, double>> breakpoints_;  // (step, change of the slope's rate)
+  std::vector<std::vector<Breakpoint>> breakpoints_of_chunk_;
+  std::vector<Breakpoint> breakpoints_;  // a heap, the least t first
   std::vector<RowState> last_state_;
 };
 

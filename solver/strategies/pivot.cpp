@@ -52,7 +52,7 @@ class Pivot : public Strategy {
     for (int k = 0; k < state.options.max_iterations; ++k) {
       ++state.summary->iterations;
       if (!state.factor_free()) return false;
-      state.refine_free(tolerance, SolveState::kSearchRefinements, false);
+      state.refine_free(tolerance, SolveState::kSearchRefinements, SolveState::Refining::search);
       const int count = state.find_violations(tolerance);
       if (count == 0) return finish(state, tolerance);
       const bool few = count <= kFewViolations;
@@ -117,7 +117,7 @@ class Pivot : public Strategy {
 
   bool finish(SolveState& state, double tolerance) {
     StageTimer timer(state.tasks.clock(), Stage::refine);
-    state.refine_free(0.1 * tolerance, SolveState::kLastRefinements, true);
+    state.refine_free(0.1 * tolerance, SolveState::kLastRefinements, SolveState::Refining::answer);
     state.changed_rows = count_changes(warm_state_, state.row_state);
     return state.residual() <= state.step->exact_limit_m_per_s();
   }

@@ -44,8 +44,7 @@ void StepShift::begin(SolveState& state, std::span<const double> slack_before) {
 }
 
 void StepShift::add_to_right_hand_side(SolveState& state) const {
-  for (std::size_t c = 0; c < wanted_.size(); ++c)
-    state.f_r[state.step->set().cones()[c].first_row] -= shift_.change()[c];
+  shift_.subtract_change(state.step->set().cones(), state.f_r);
 }
 
 bool StepShift::is_matched(SolveState& state) {

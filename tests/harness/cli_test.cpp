@@ -107,6 +107,16 @@ const std::vector<BadInput> kBadInputs = {
     {{"--repeats", "99999999999999999999"}, {"--repeats: 99999999999999999999 is not in [1, 2147483647]"}},
     {{"--partitioner", "mindp", "--tau-mr", "5"},
      {"--tau-mr", "partitioner mr", "nothing in this run has it"}},
+    {{"--partitioner", "mindp@max-bodies=10,bfs@max-bodies=20", "--max-bodies", "30"},
+     {"--max-bodies", "would do nothing", "mindp@max-bodies=10, bfs@max-bodies=20"}},
+    {{"--solver", "exact", "--partitioner", "mix", "--max-bodies", "7"},
+     {"--max-bodies", "parameter of mix, and no solver of this run splits bodies"}},
+    {{"--solver", "alternate:schur-rows", "--kernel", "dense"},
+     {"--kernel", "'dense' does not go with strategy alternate", "alternate:schur-rows", "allowed: schur-"}},
+    {{"--solver", "pivot:dense", "--strategy", "alternate"},
+     {"--strategy", "'alternate' does not go with kernel dense", "allowed: pivot"}},
+    {{"--partitioner", "all@max-bodies=5"}, {"--partitioner", "'all@max-bodies=5'", "takes no parameters"}},
+    {{"--friction", "box@mu=1", "--mu", "0.3"}, {"--mu", "would do nothing", "box@mu=1"}},
     {{"--sweeps", "5"}, {"--sweeps", "solvers pgs, pgs-colored", "nothing in this run has it"}},
     {{"--solver", "schur@sweeps=5"}, {"--solver", "sweeps is a parameter of solvers pgs, "}},
     {{"--solver", "pgs@sweeps=x"}, {"--solver pgs@sweeps", "'x' is not a whole number"}},
@@ -151,6 +161,10 @@ TEST(BadInput, IsOneLineExitCodeOneAndLeavesNothing) {
 TEST(BadInput, RequiredOptionsAndNames) {
   const TemporaryDirectory directory;
   const std::string out = directory / "out";
+  EXPECT_NE(
+      run_cleave({"run", "--out", out, "--scene", "rock_pile@bodies=30", "--bodies", "40"})
+          .err.find("--bodies: would do nothing, as all that have it say their own: rock_pile@bodies=30"),
+      std::string::npos);
   EXPECT_NE(run_cleave({"run", "--out", out}).err.find("--scene: is required"), std::string::npos);
   EXPECT_NE(run_cleave({"run", "--scene", "rock_pile"}).err.find("--out: is required"), std::string::npos);
   const ProgramResult scene = run_cleave({"run", "--scene", "rock_pil", "--out", out});

@@ -87,6 +87,11 @@ TEST_F(Campaigns, AreCollectedIntoOneTable) {
   EXPECT_EQ(run_cleave({"collect", directory_ / "a", "--out", directory_ / "all.csv"}).exit_code, 1);
 }
 
+TEST_F(Campaigns, CollectedAreVerifiedUnderAnyName) {
+  ASSERT_EQ(run_cleave({"collect", directory_ / "a", "--out", directory_ / "table"}).exit_code, 0);
+  EXPECT_EQ(count_lines(run_cleave({"verify", directory_ / "table"}).out), 4);
+}
+
 // verify knows the tables by their checksums: a byte of any of the four files, a file that is gone, one that is none of them.
 TEST_F(Campaigns, CollectedAreVerified) {
   const fs::path out = directory_ / "all.csv";

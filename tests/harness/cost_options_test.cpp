@@ -101,6 +101,13 @@ TEST(CostOptions, CalibrateWritesWhatRunsRead) {
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_NE(alone.err.find("none to hold out; name more FILES"), std::string::npos) << alone.err;
   EXPECT_FALSE(std::filesystem::exists(out));
+  ASSERT_EQ(
+      run_cleave({"record", "--scene", "ladder_free", "--at", "1", "--out", directory / "free"}).exit_code,
+      0);
+  const std::string free = directory / "free/ladder_free_step000001.h5";
+  const ProgramResult rowless = run_cleave({"calibrate", one, free, "--out", out, "--repeats", "1"});
+  EXPECT_EQ(rowless.exit_code, 1);
+  EXPECT_NE(rowless.err.find(free + ": has no constraint row"), std::string::npos) << rowless.err;
   // Before anything is timed.
   const ProgramResult nowhere = run_cleave({"calibrate", one, two, "--out", directory / "none/own.toml"});
   EXPECT_EQ(nowhere.exit_code, 1);

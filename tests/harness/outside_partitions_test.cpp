@@ -236,7 +236,8 @@ TEST_F(OutsidePartitions, BadFilesAreRefusedBeforeAnythingIsCreated) {
     const ProgramResult result = replay(*this / name, "out");
     EXPECT_EQ(result.exit_code, 1) << name;
     EXPECT_EQ(count_lines(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find((*this / name).string()), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("--partitioner file: " + (*this / name).string()), std::string::npos)
+        << result.err;
     EXPECT_FALSE(fs::exists(*this / "out"));
   }
   const ProgramResult nothing =

@@ -270,6 +270,32 @@ TEST(Signals, NoSolveOfAReplayBeginsAfterOne) {
   expect_nothing_after_signal({"replay", directory / "in/rock_pile_step000050.h5"}, 2);
 }
 
+// A partitioner that would try a hundred million times ends after the trial at hand.
+TEST(Signals, NoTrialOfAPartitionerBeginsAfterOne) {
+  const TemporaryDirectory directory;
+  const Running running(
+      directory / "out",
+      {"run", "--scene", "rock_pile", "--bodies", "30", "--steps", "2", "--measure-every", "2",
+       "--partitioner", "karger@trials=100000000", "--refiner", "none", "--solver", "schur"},
+      1);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  ::kill(running.process, SIGINT);
+  EXPECT_EQ(finish_cleave(running.process), 130);
+  EXPECT_EQ(count_lines(read_text(running.csv)), 1);
+}
+
+// What a run was to explain it does not when it is interrupted, and its files are those that it has.
+TEST(Signals, AnInterruptedRunExplainsNothing) {
+  const TemporaryDirectory directory;
+  const Running running(
+      directory / "out",
+      {"run", "--scene", "rock_pile", "--bodies", "12", "--steps", "1000000", "--explain-model"}, 10);
+  ::kill(running.process, SIGINT);
+  EXPECT_EQ(finish_cleave(running.process), 130);
+  EXPECT_FALSE(fs::exists(directory / "out/explain_model.csv"));
+  EXPECT_TRUE(fs::exists(directory / "out/checksums"));
+}
+
 // record writes a step's file and row or neither.
 TEST(Signals, ARecordingEndsBetweenSteps) {
   const TemporaryDirectory directory;

@@ -1,6 +1,11 @@
 #include "harness/base/progress.h"
 
 #include <gtest/gtest.h>
+#include <pty.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <stdexcept>
 
 namespace cleave {
 namespace {
@@ -16,6 +21,42 @@ TEST(ExpectedSeconds, AreThoseOfTheLastLine) {
 TEST(ExpectedSeconds, AreUnknownWithoutALine) {
   for (const char* printed : {"", "nothing of the kind\n", "rock_pile: step 34 of 500, 10", "step by step\n"})
     EXPECT_FALSE(expected_seconds(printed)) << printed;
+}
+
+// Standard error as a terminal of so many columns; what came to it.
+class Terminal {
+ public:
+  explicit Terminal(unsigned short columns) : stderr_(::dup(STDERR_FILENO)) {
+    winsize size{24, columns, 0, 0};
+    if (::openpty(&master_, &slave_, nullptr, nullptr, &size) != 0) throw std::runtime_error("no terminal");
+    ::dup2(slave_, STDERR_FILENO);
+  }
+  ~Terminal() {
+    ::dup2(stderr_, STDERR_FILENO);
+    for (const int descriptor : {stderr_, slave_, master_}) ::close(descriptor);
+  }
+  std::string read() const {
+    char bytes[1000];
+    return {bytes, static_cast<std::size_t>(std::max<ssize_t>(::read(master_, bytes, sizeof bytes), 0))};
+  }
+
+ private:
+  int stderr_, master_ = -1, slave_ = -1;
+};
+
+TEST(ProgressLine, IsCutToTheTerminal) {
+  const Terminal terminal(12);
+  ProgressLine line("sweep");
+  line.show("of \u00e4\u00f6\u00fc and more");
+  EXPECT_EQ(terminal.read(), "\rsweep: of \u00e4");
+  line.show("end");
+  EXPECT_EQ(terminal.read(), "\rsweep: end ");
+}
+
+TEST(ProgressLine, IsWholeWhereTheTerminalSaysNoWidth) {
+  const Terminal terminal(0);
+  ProgressLine("sweep").show("a line that goes on and on and on");
+  EXPECT_EQ(terminal.read(), "\rsweep: a line that goes on and on and on\r\n");
 }
 
 }  // namespace

@@ -324,6 +324,18 @@ TEST(Sweep, AChangedSpecRunsWhatIsNewAndKeepsWhatIsOld) {
   EXPECT_EQ(campaign.failures(), "");
 }
 
+// A campaign that was killed between its index and their checksums: what its directories vouch for stays known.
+TEST(Sweep, AFailedCellOfAnEarlierSpecStaysWhereTheIndexHasNoChecksums) {
+  const Campaign campaign(std::string(kEndless) + "[[include]]\nsteps = 4\nmeasure-every = 2\n");
+  ASSERT_EQ(campaign.sweep({"--cell-seconds", "0.5"}).exit_code, 2);
+  fs::remove(campaign.out() / "checksums");
+  campaign.write_spec(std::string(kTiny) + "seed = 2\n");
+  EXPECT_EQ(campaign.sweep().exit_code, 0);
+  EXPECT_EQ(campaign.index().column("number"), Words({"1", "0", "0"}));
+  EXPECT_EQ(campaign.index().column("status"), Words({"ok", "timeout", "ok"}));
+  EXPECT_EQ(campaign.failures(), "");
+}
+
 TEST(Sweep, RowsThatAreNotOkAreARowOfTheIndex) {
   const Campaign campaign(
       std::string(kTiny) +
@@ -725,6 +737,28 @@ TEST(SweepVerify, EveryCheckOfTheTableCanFail) {
   EXPECT_EQ(calls, broken.size());
 }
 
+// A campaign that was killed has its lock still; its cells are looked at none the less.
+TEST(SweepVerify, LooksAtTheCellsOfAKilledCampaign) {
+  const Campaign campaign(std::string(kTiny) +
+                          "[[include]]\nsteps = 100000000\nmeasure-every = 100000000\nsolver = 'schur'\n");
+  const Adoption adoption;
+  const Group group(campaign.words({}));
+  for (int k = 0;
+       k < 5000 && (!fs::exists(campaign.out() / "index.csv") || campaign.index().at(0, "status") != "ok");
+       ++k)
+    pause_ms(5);
+  pause_ms(200);  // an index and its checksums appear one after the other
+  group.send(SIGKILL);
+  adoption.finish(group);
+  ASSERT_TRUE(fs::exists(campaign.out() / "cleave.lock"));
+  const ProgramResult result = run_cleave({"verify", campaign.out()});
+  EXPECT_EQ(result.exit_code, 3);
+  EXPECT_EQ(campaign.failures(),
+            "FAIL  " + campaign.cell(1).string() + ": pending: the campaign is incomplete\n");
+  EXPECT_NE(result.out.find("ok    " + (campaign.cell(0) / "steps.csv").string()), std::string::npos)
+      << result.out;
+}
+
 TEST(SweepVerify, NamesFilesAndLogsThatNobodyKnows) {
   const Campaign campaign(std::string(kTiny) + "seed = [1, 2]\n");
   ASSERT_EQ(campaign.sweep().exit_code, 0);
@@ -838,6 +872,26 @@ TEST(Rerun, RepeatsACellAndHoldsItsRowsAgainstIt) {
   text.erase(text.rfind('\n', text.size() - 2) + 1);
   std::ofstream(cell / "steps.csv") << text;
   EXPECT_NE(run_cleave({"rerun", cell}).out.find("it has 1, again 2"), std::string::npos);
+}
+
+// What the manifest knows by its content is named again, and only then is the run the same.
+TEST(Rerun, WantsTheFilesThatARunHasRead) {
+  const TemporaryDirectory directory;
+  const std::string scene = "file@path=" + std::string(CLEAVE_SOURCE_DIR) + "/scenarios/files/pile.toml";
+  ASSERT_EQ(run_cleave({"run", "--scene", scene, "--steps", "4", "--measure-every", "2", "--repeats", "1",
+                        "--solver", "exact", "--out", directory / "run"})
+                .exit_code,
+            0);
+  const ProgramResult without = run_cleave({"rerun", directory / "run"});
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_NE(without.err.find("--scene: is required"), std::string::npos) << without.err;
+  const ProgramResult with = run_cleave({"rerun", directory / "run", "--scene", scene});
+  EXPECT_EQ(with.exit_code, 0) << with.err;
+  EXPECT_TRUE(with.out.starts_with("ok    ")) << with.out;
+  const ProgramResult verified = run_cleave({"verify", directory / "run", "--rerun", "1"});
+  EXPECT_EQ(verified.exit_code, 0) << verified.err;
+  EXPECT_NE(verified.err.find("is not repeated, as it read files"), std::string::npos) << verified.err;
+  EXPECT_NE(verified.err.find(" checks, 0 failed"), std::string::npos) << verified.err;
 }
 
 TEST(Rerun, RefusesWhatIsNoCompleteRun) {

@@ -170,6 +170,13 @@ TEST_F(Vtu, SeveralFilesAreASeries) {
   EXPECT_EQ(found,
             (std::vector<std::pair<double, std::string>>{{70 * h_s, "a_0.vtu"}, {80 * h_s, "a_1.vtu"}}));
 
+  EXPECT_FALSE(fs::exists(directory_ / "a_0.vtu.part"));
+  // A shorter one in its place leaves no picture that is not in its list.
+  EXPECT_EQ(
+      run_cleave({"export", second, "--format", "vtu", "--out", directory_ / "a.pvd", "--force"}).exit_code,
+      0);
+  EXPECT_FALSE(fs::exists(directory_ / "a_1.vtu"));
+
   const auto refusal = [](std::vector<std::string> words) {
     const ProgramResult result = run_cleave(words);
     EXPECT_EQ(result.exit_code, 1);
@@ -181,6 +188,10 @@ TEST_F(Vtu, SeveralFilesAreASeries) {
   EXPECT_NE(refusal({"export", first, second, "--format", "metis", "--out", directory_ / "b"})
                 .find("FILE: --format metis takes one, not 2"),
             std::string::npos);
+  EXPECT_NE(refusal({"export", second, first, "--format", "vtu", "--out", directory_ / "c.pvd"})
+                .find(first.string() + " is no later step of the simulation of " + second.string()),
+            std::string::npos);
+  EXPECT_FALSE(fs::exists(directory_ / "c_0.vtu") || fs::exists(directory_ / "c_0.vtu.part"));
   EXPECT_NE(
       refusal({"export", first, second, "--format", "vtu", "--out", directory_ / "a.pvd"}).find("exists"),
       std::string::npos);

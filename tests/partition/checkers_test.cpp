@@ -60,9 +60,9 @@ class FixedRefiner : public Refiner {
       : Refiner(EdgeWeight::rows), answer_(std::move(answer)), summary_(summary) {}
 
  private:
-  RefineSummary do_run(const BodyGraph&, int, Partition& partition) const override {
+  void do_run(const BodyGraph&, int, Partition& partition, RefineSummary& summary) const override {
     partition = answer_;
-    return summary_;
+    summary = summary_;
   }
   Partition answer_;
   RefineSummary summary_;

@@ -79,7 +79,7 @@ TEST(PeerProcess, ARunThatIsStoppedDoesNotWait) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
     stop = true;
   });
-  EXPECT_THROW(run_peer([]() -> PeerAnswer { hang(); }, kLong_s, &stop), SolveStopped);
+  EXPECT_THROW(run_peer([]() -> PeerAnswer { hang(); }, kLong_s, &stop), Stopped);
   asker.join();
 }
 

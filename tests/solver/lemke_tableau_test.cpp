@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/stop.h"
+#include "harness/base/stop.h"
 #include "tests/solver/seeded_random.h"
 
 namespace cleave {
@@ -149,7 +149,7 @@ TEST(LemkeTableauTest, IsStoppedBetweenPivotsAndSolvesAgain) {
     tableau.set_matrix(0, 0, 2);
     tableau.set_constant(0, -3);
     if (stopped) {
-      EXPECT_THROW(tableau.solve(10, &stop), SolveStopped);
+      EXPECT_THROW(tableau.solve(10, &stop), Stopped);
     } else {
       EXPECT_EQ(tableau.solve(10, &stop), LemkeTableau::End::solved);
       EXPECT_EQ(tableau.value(0), 1.5);

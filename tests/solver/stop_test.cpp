@@ -1,6 +1,6 @@
 // A solve that its caller ends: at the next iteration, out of every solver, which then solves as if nothing had
 // been.
-#include "solver/stop.h"
+#include "harness/base/stop.h"
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ TEST(Stop, EndsEverySolverWhichThenSolvesAsIfNew) {
     std::atomic<bool> stop = false;
     const auto solver = make_step_solver(name, {.stop = &stop});
     stop = true;
-    EXPECT_THROW(solved(*solver, problem), SolveStopped);
+    EXPECT_THROW(solved(*solver, problem), Stopped);
     stop = false;
     EXPECT_EQ(solved(*solver, problem), solved(*make_step_solver(name), problem));
   }
@@ -58,7 +58,7 @@ TEST(Stop, TakesEffectAtTheNextFactorisation) {
   int factorizations = 0;
   const auto solver = make_direct_solver("interior-point", "monolithic", {.stop = &stop}, Settings(),
                                          std::make_unique<Stopping>(stop, factorizations));
-  EXPECT_THROW(solved(*solver, small_pile()), SolveStopped);
+  EXPECT_THROW(solved(*solver, small_pile()), Stopped);
   EXPECT_EQ(factorizations, 3);
 }
 
@@ -75,7 +75,7 @@ TEST(Stop, EndsADenseFactorisationOnAnyNumberOfThreads) {
         matrix.fill_panel(p, [](int row, int column) { return row == column ? 4.0 : 0.001; });
     };
     fill();
-    EXPECT_THROW(matrix.factor(tasks), SolveStopped);
+    EXPECT_THROW(matrix.factor(tasks), Stopped);
     stop = false;
     fill();
     EXPECT_TRUE(matrix.factor(tasks));
