@@ -9,7 +9,6 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/base/ceil_div.h"
 #include "partition/body_graph.h"
 
 namespace cleave {
@@ -54,7 +53,7 @@ int most_grown_bodies(int max_bodies, double max_growth);
 
 // ceil(bodies / max_bodies): how many parts are wanted.
 inline int wanted_parts(int bodies, int max_bodies) {
-  return ceil_div(bodies, max_bodies);
+  return bodies / max_bodies + (bodies % max_bodies > 0);
 }
 
 // Part sizes in bodies, by part id. Every id must lie in [0, part_count).

@@ -15,6 +15,7 @@
 #include <stdexcept>
 
 #include "harness/base/end_with_parent.h"
+#include "harness/base/signal_name.h"
 #include "harness/base/stop_signals.h"
 
 namespace cleave {
@@ -71,8 +72,7 @@ std::string last_of(int file) {
 
 std::string CellEnd::text() const {
   if (exit_code >= 0) return "ended with exit code " + std::to_string(exit_code);
-  const char* name = ::sigabbrev_np(signal);
-  return "ended by " + (name != nullptr ? std::string("SIG") + name : "signal " + std::to_string(signal));
+  return "ended by " + signal_name(signal);
 }
 
 std::string CellEnd::last_line() const {

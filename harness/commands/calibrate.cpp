@@ -192,9 +192,11 @@ void fit(const Samples& samples, int threads, std::vector<KernelCost>& costs,
     costs.push_back(fit_cost(fitted));
     const std::string errors =
         std::to_string(fitted.size()) + " solves fitted, median error on " + std::to_string(held_out.size()) +
-        " others " + percent(median_error(held_out, costs.back(), true)) + " with what they factored, " +
-        percent(median_error(held_out, costs.back(), false)) + " from the partition alone, " +
-        percent(median_cell_error(held_out, costs.back())) + " so of the sum over a scene's steps";
+        " others " + percent(median_error(held_out, costs.back(), Knowledge::of_sample)) +
+        " with what they factored, " +
+        percent(median_error(held_out, costs.back(), Knowledge::of_partition)) +
+        " from the partition alone, " + percent(median_cell_error(held_out, costs.back())) +
+        " so of the sum over a scene's steps";
     say(name + ": " + errors);
     about.emplace_back("errors_" + std::string(cost_kernel_names()[k]) + "_" + std::to_string(threads),
                        errors);

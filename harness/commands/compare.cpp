@@ -43,7 +43,7 @@ struct Group {
   std::map<Texts, StepValues> steps;  // by seed and step
   std::string machine;                // processor of its first row
 };
-struct Campaign {
+struct MeasuredGroups {
   std::map<Texts, Group> groups;  // by the columns of --by
   int incomplete = 0;             // cells that were killed, or are not at their end
 };
@@ -74,11 +74,11 @@ double number_in(const MeasuredRow& row, int place) {
   return value == -1 && std::string_view(all[place].type) == "integer" ? kUnmeasured : value;
 }
 
-Campaign read_campaign(const std::string& directory, const std::vector<int>& by, int column) {
+MeasuredGroups read_groups(const std::string& directory, const std::vector<int>& by, int column) {
   static const int seed = place_of("", "seed"), step = place_of("", "step"), status = place_of("", "status"),
                    hash = place_of("", "solution_hash");
   const bool is_of_machine = columns()[static_cast<std::size_t>(column)].machine;
-  Campaign campaign;
+  MeasuredGroups campaign;
   const auto add = [&](const MeasuredRow& row, const std::string& machine) {
     const Texts& cells = row.cells;
     Texts key;
@@ -174,7 +174,7 @@ int read_column(const std::string& name) {
 }
 
 // What the lines do not show.
-std::string remarks(const Campaign& a, const Campaign& b, int machines) {
+std::string remarks(const MeasuredGroups& a, const MeasuredGroups& b, int machines) {
   std::string text;
   if (machines > 0) text += ", " + std::to_string(machines) + " groups on another processor in B";
   for (const auto& [campaign, name] : {std::pair(&a, " of A"), std::pair(&b, " of B")})
@@ -189,8 +189,8 @@ int compare(const CompareOptions& options) {
   const double allow = parse_number("--allow", options.allow, {0, 1e6});
   const int column = read_column(options.column);
   const std::vector<int> by = read_by(options.by);
-  const Campaign a = read_campaign(options.a, by, column), b = read_campaign(options.b, by, column);
-  const auto is_in = [](const Campaign& campaign) {
+  const MeasuredGroups a = read_groups(options.a, by, column), b = read_groups(options.b, by, column);
+  const auto is_in = [](const MeasuredGroups& campaign) {
     return [&campaign](const auto& entry) { return campaign.groups.contains(entry.first); };
   };
   if (std::ranges::none_of(a.groups, is_in(b)))
@@ -205,7 +205,7 @@ int compare(const CompareOptions& options) {
     regressions += print_group(key, compared(group, b.groups.at(key)), allow);
   }
   std::fflush(stdout);
-  const auto alone = [&](const Campaign& one, const Campaign& other) {
+  const auto alone = [&](const MeasuredGroups& one, const MeasuredGroups& other) {
     return std::to_string(std::ssize(one.groups) - std::ranges::count_if(one.groups, is_in(other)));
   };
   say(std::to_string(groups) + " groups in both, " + alone(a, b) + " in A alone, " + alone(b, a) +

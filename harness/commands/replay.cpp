@@ -108,7 +108,7 @@ void check_files(ReplayOptions& options) {
 }
 
 // The files of --write-solutions must not meet each other or replace what is replayed.
-void check_names(const ReplayOptions& options) {
+void check_copies_differ(const ReplayOptions& options) {
   std::set<std::string> names;
   for (const std::string& file : options.files) {
     const fs::path copy = fs::path(options.solve.out) / fs::path(file).filename();
@@ -232,7 +232,7 @@ class Replay {
 int replay(ReplayOptions options, const std::vector<std::string>& argv) {
   if (options.files.empty()) throw std::invalid_argument("FILES: at least one problem file is required");
   check_files(options);
-  if (options.write_solutions) check_names(options);
+  if (options.write_solutions) check_copies_differ(options);
   check_not_taken_away(options);
   check_run_directory(options.solve.out, options.solve.force, files_written(options));
   print_left_out(options.solve);

@@ -67,9 +67,9 @@ bool is_number(const Parameter& parameter) {
   return parameter.kind == Parameter::Kind::integer || parameter.kind == Parameter::Kind::number;
 }
 
-void declare_parameters(CLI::App& app, Given& given, bool with_world) {
+void declare_parameters(CLI::App& app, Given& given, bool CommandSet::*command) {
   for (const auto& [parameter, owners, about, in_replay] : common_parameters()) {
-    if (!with_world && !in_replay) continue;
+    if (!has_world(command) && !in_replay) continue;
     const std::string range = is_number(parameter) ? ", in " + allowed_text(parameter) : "";
     const std::string help =
         parameter.help + range + default_text(parameter.default_value) + "; of " + owners;
@@ -108,13 +108,12 @@ void declare_scenes(CLI::App& app, Given& given) {
 }  // namespace
 
 void declare_run_options(CLI::App& app, Given& given, bool CommandSet::*command) {
-  const bool with_world = command != &CommandSet::replay;
   declare(
       app, given, "config", "FILE",
       "manifest.json whose run is repeated; options given beside it win, --out and --force are not in it");
   declare_table(app, given, command);
-  declare_parameters(app, given, with_world);
-  if (with_world) declare_scenes(app, given);
+  declare_parameters(app, given, command);
+  if (has_world(command)) declare_scenes(app, given);
   app.footer(kExample);
 }
 

@@ -130,7 +130,8 @@ void check_cell(const fs::path& out, const std::string& cell, const std::vector<
 }
 
 // What no index knows.
-void check_names(const fs::path& folder, const std::string& ending, const Rows& rows, CheckList& list) {
+void check_no_strangers(const fs::path& folder, const std::string& ending, const Rows& rows,
+                        CheckList& list) {
   std::error_code none;
   if (!fs::is_directory(folder, none)) return;
   std::string others;
@@ -177,8 +178,8 @@ void verify_campaign(const fs::path& directory, CheckList& list) {
         directory.string(),
         "its cells were not looked at, for what is wrong with its index or with what lies beside it");
   for (const auto& [cell, of_cell] : rows) check_cell(directory, cell, of_cell, list);
-  check_names(directory / kCellsFolder, "", rows, list);
-  check_names(directory / kFailedFolder, ".log", rows, list);
+  check_no_strangers(directory / kCellsFolder, "", rows, list);
+  check_no_strangers(directory / kFailedFolder, ".log", rows, list);
   for (const fs::path& merged : {directory / kMergedTable, directory / kSlurmFolder / kMergedTable})
     if (fs::exists(merged)) check_collected_tables(merged, list);
 }

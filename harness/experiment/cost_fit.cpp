@@ -136,17 +136,18 @@ KernelCost fit_cost(std::span<const CostSample> samples) {
   return cost;
 }
 
-double modelled_ms(const CostSample& sample, const KernelCost& cost, bool counted) {
-  if (!counted) return modelled_ms(features_of(sample, cost.active_share.of(sample.graph)), cost);
+double modelled_ms(const CostSample& sample, const KernelCost& cost, Knowledge known) {
+  if (known == Knowledge::of_partition)
+    return modelled_ms(features_of(sample, cost.active_share.of(sample.graph)), cost);
   KernelCost own = cost;
   own.factorizations = ExpectedFactorizations::always(sample.factorizations);
   return modelled_ms(features_of(sample, sample.active_share), own);
 }
 
-double median_error(std::span<const CostSample> samples, const KernelCost& cost, bool counted) {
+double median_error(std::span<const CostSample> samples, const KernelCost& cost, Knowledge known) {
   std::vector<double> errors;
   for (const CostSample& sample : samples)
-    errors.push_back(std::abs(modelled_ms(sample, cost, counted) / sample.t_s_ms - 1));
+    errors.push_back(std::abs(modelled_ms(sample, cost, known) / sample.t_s_ms - 1));
   return lower_median(std::move(errors));
 }
 
@@ -157,7 +158,7 @@ double median_cell_error(std::span<const CostSample> samples, const KernelCost& 
   std::map<int, Sums> cells;
   for (const CostSample& sample : samples) {
     Sums& sums = cells[sample.cell];
-    sums.modelled_ms += modelled_ms(sample, cost, false);
+    sums.modelled_ms += modelled_ms(sample, cost, Knowledge::of_partition);
     sums.measured_ms += sample.t_s_ms;
   }
   std::vector<double> errors;

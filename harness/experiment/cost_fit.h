@@ -31,12 +31,13 @@ double interface_size(double flops);
 // the whole solve; then all are scaled, so that half of the solves take more than modelled.
 KernelCost fit_cost(std::span<const CostSample> samples);
 
-// Of one sample. counted: with its own number of factorisations and share of active rows; else with the expected ones,
-// from the partition alone.
-double modelled_ms(const CostSample& sample, const KernelCost& cost, bool counted);
+// What a modelled time stands on: the sample's own number of factorisations and share of active rows, or the expected ones, from
+// the partition alone.
+enum class Knowledge { of_sample, of_partition };
+double modelled_ms(const CostSample& sample, const KernelCost& cost, Knowledge known);
 
 // Median (the lower middle one of an even number) of |modelled / measured - 1|; NaN without samples.
-double median_error(std::span<const CostSample> samples, const KernelCost& cost, bool counted);
+double median_error(std::span<const CostSample> samples, const KernelCost& cost, Knowledge known);
 // The same of cells, each with the sums over its solves, from the partition alone: what a choice for a scene stands on, where steps that
 // take more factorisations and fewer make up for each other.
 double median_cell_error(std::span<const CostSample> samples, const KernelCost& cost);

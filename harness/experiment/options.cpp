@@ -133,12 +133,18 @@ void read_session(const Given& given, RunOptions& options) {
   options.repeats = 1;
 }
 
-// ODE's own solvers read the world and would solve every row of it.
-void check_reads_problem(const RunOptions& options) {
+// The first of ODE's own solvers that the run has; empty: none.
+std::string ode_solver_of(const RunOptions& options) {
   for (const AlgorithmEntry& ode : ode_baselines())
-    if (std::ranges::count(options.solvers, ode.name, &Algorithm::name) > 0)
-      reject("model", "auto leaves rows out of the step problem, which --solver " + std::string(ode.name) +
-                          " does not read; allowed: full");
+    if (std::ranges::count(options.solvers, ode.name, &Algorithm::name) > 0) return ode.name;
+  return {};
+}
+
+// They read the world and would solve every row of it.
+void check_reads_problem(const RunOptions& options) {
+  if (const std::string ode = ode_solver_of(options); !ode.empty())
+    reject("model", "auto leaves rows out of the step problem, which --solver " + ode +
+                        " does not read; allowed: full");
 }
 
 }  // namespace
@@ -184,10 +190,8 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
   override_objective(options);
   read_session(given, options);
   check_owned(options, stored, false);
-  for (const AlgorithmEntry& ode : ode_baselines())
-    if (std::ranges::count(options.solvers, ode.name, &Algorithm::name) > 0)
-      reject("solver",
-             std::string(ode.name) + " is ODE's own and needs the world of a run; a problem file holds none");
+  if (const std::string ode = ode_solver_of(options); !ode.empty())
+    reject("solver", ode + " is ODE's own and needs the world of a run; a problem file holds none");
   options.memory_limit_bytes = memory_limit_bytes(options.memory_limit_gb);
   return options;
 }

@@ -74,6 +74,8 @@ struct RunOptions {
 struct CommandSet {
   bool run, record, replay;
 };
+// Whether a command simulates a scene; replay has the problems of files.
+inline bool has_world(bool CommandSet::*command) { return command != &CommandSet::replay; }
 
 // One option of the command line. The value is text on the way in and on the way out. Lists of algorithms are
 // kept as texts on the way in; parse_run_options reads them once all options are known.

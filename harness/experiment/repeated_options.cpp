@@ -62,12 +62,12 @@ void check_can_be_found(const Given& taken) {
 // A manifest names every option of the table; the command takes those it declares. A flag is given or not.
 bool is_taken(const std::string& name, const std::string& value, bool CommandSet::*command,
               const std::vector<std::string>& own_and_scene) {
-  const bool with_world = command != &CommandSet::replay;
   if (const OptionSpec* spec = find_option(name))
     return spec->commands.*command && name != "out" && name != "force" &&
            !(spec->kind == OptionKind::flag && value == "false");
   if (std::ranges::count(own_and_scene, name) > 0) return true;
-  if (const CommonParameter* common = find_common_parameter(name)) return with_world || common->in_replay;
+  if (const CommonParameter* common = find_common_parameter(name))
+    return has_world(command) || common->in_replay;
   reject_unknown(name, own_and_scene);
 }
 

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "harness/files/write_all.h"
+#include "harness/base/write_all.h"
 
 namespace cleave {
 namespace {

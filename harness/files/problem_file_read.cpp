@@ -82,7 +82,7 @@ void check_friction(const Hdf5Reader& reader, const StepProblem& problem) {
 }
 
 // A file of ours holds nothing that is not read: the name of an array with a default may have been damaged.
-void check_names(const Hdf5Reader& reader, const StoredHashes& hashes) {
+void check_members(const Hdf5Reader& reader, const StoredHashes& hashes) {
   std::set<std::string> known = {"contact_set", "body_group", "shape", "solution", "partition"};
   ProblemFile any;
   visit_arrays(any, 0, 0, [&known](const char* name, auto&&...) { known.insert(name); });
@@ -158,7 +158,7 @@ std::string read_packed(const fs::path& path) {
   PackedProblemFile packed;
   try {
     read_hashes(reader, packed.hashes);
-    check_names(reader, packed.hashes);
+    check_members(reader, packed.hashes);
     packed.file = read_contents(reader);
     return pack(packed);
   } catch (const std::bad_alloc&) {

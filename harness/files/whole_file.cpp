@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "harness/files/write_all.h"
+#include "harness/base/write_all.h"
 
 namespace cleave {
 namespace {

@@ -17,6 +17,11 @@
 #include <string>
 #include <vector>
 
+#include "harness/base/median.h"
+#include "harness/base/numbers.h"
+
+using cleave::median;
+
 namespace {
 
 struct Deleter {
@@ -27,11 +32,6 @@ struct Deleter {
 double now_ms() {
   using Clock = std::chrono::steady_clock;
   return std::chrono::duration<double, std::milli>(Clock::now().time_since_epoch()).count();
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
 }
 
 [[noreturn]] void fail(const std::string& text) {
@@ -53,8 +53,9 @@ double kinetic_j(const mjModel& model, const mjData& data) {
 }
 
 int count(const char* text, const char* name) {
-  const int value = std::atoi(text);
-  if (value < 1) fail(std::string(name) + " is '" + text + "', expected a whole number from 1");
+  int value = 0;
+  if (!cleave::read_whole(text, value) || value < 1)
+    fail(std::string(name) + " is '" + text + "', expected a whole number from 1");
   return value;
 }
 

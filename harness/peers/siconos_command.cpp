@@ -4,6 +4,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "harness/base/csv_text.h"
 #include "harness/base/numbers.h"
 #include "harness/base/refusals.h"
 #include "harness/base/value_spans.h"

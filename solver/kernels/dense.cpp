@@ -51,10 +51,10 @@ class DenseKernel : public Kernel {
     const Eigen::Map<const Eigen::VectorXd> fv(f_v.data(), size(f_v)), fr(f_r.data(), size(f_r));
     Eigen::Map<Eigen::VectorXd> v(dv.data(), size(dv)), lambda(dlambda.data(), size(dlambda));
     Eigen::VectorXd weighted = d_.cwiseProduct(fr);
-    turn(weighted, false);
+    turn_from_basis(weighted);
     v = factor_->solve(fv + jacobian_.transpose() * weighted);
     Eigen::VectorXd row_velocity = jacobian_ * v;
-    turn(row_velocity, true);
+    turn_to_basis(row_velocity);
     lambda = d_.cwiseProduct(fr - row_velocity);
     run_work(around.after, *step_, tasks);
   }
@@ -102,14 +102,18 @@ class DenseKernel : public Kernel {
     }
   }
 
-  // x <- B x, or B^T x, on the rows of the blocks.
-  void turn(Eigen::VectorXd& x, bool to_basis) const {
-    for (const WeightBlock& block : blocks_) {
-      Eigen::MatrixXd basis = basis_of(block);
-      if (to_basis) basis.transposeInPlace();
-      const Eigen::VectorXd turned = basis * x.segment(block.first_row, block.row_count);
-      x.segment(block.first_row, block.row_count) = turned;
-    }
+  // x <- B x on the rows of the blocks.
+  void turn_from_basis(Eigen::VectorXd& x) const {
+    for (const WeightBlock& block : blocks_)
+      x.segment(block.first_row, block.row_count) =
+          (basis_of(block) * x.segment(block.first_row, block.row_count)).eval();
+  }
+
+  // x <- B^T x
+  void turn_to_basis(Eigen::VectorXd& x) const {
+    for (const WeightBlock& block : blocks_)
+      x.segment(block.first_row, block.row_count) =
+          (basis_of(block).transpose() * x.segment(block.first_row, block.row_count)).eval();
   }
 
   // M and J as dense matrices.

@@ -29,7 +29,7 @@ class Alternate : public Strategy {
     const double tolerance = state.violation_tolerance();
     for (int round = 0; round < state.options.max_iterations; ++round) {
       ++state.summary->iterations;
-      if (!pivot(state, true, tolerance) || !pivot(state, false, tolerance)) return false;
+      if (!pivot(state, Side::interior, tolerance) || !pivot(state, Side::interface, tolerance)) return false;
       // The interface impulses are new: are the interior rows still consistent?
       if (state.find_violations(tolerance) == 0) {
         StageTimer timer(state.tasks.clock(), Stage::refine);
@@ -53,19 +53,22 @@ class Alternate : public Strategy {
     }
   }
 
+  enum class Side { interior, interface };
+
   bool is_cut(int row) const { return group_[row] == group_count_ - 1; }
+  Side side_of(int row) const { return is_cut(row) ? Side::interface : Side::interior; }
 
   // Block pivoting over the interior rows (each part with its own count and patience) with the cut rows'
   // impulses held, or over the cut rows with the interior states held. A part that does not finish keeps its
   // last states.
-  bool pivot(SolveState& state, bool interior, double tolerance) {
+  bool pivot(SolveState& state, Side side, double tolerance) {
     least_.assign(group_count_, std::numeric_limits<int>::max());
     patience_.assign(group_count_, kBlockPatience);
     for (int k = 0; k < kMostPivots; ++k) {
-      if (!solve(state, interior)) return false;
+      if (!solve(state, side)) return false;
       state.find_violations(tolerance);
       count_.assign(group_count_, 0);
-      for (int row : state.violated) count_[group_[row]] += is_cut(row) != interior;
+      for (int row : state.violated) count_[group_[row]] += side_of(row) == side;
       bool any = false;
       for (int g = 0; g < group_count_; ++g) {
         if (count_[g] == 0) continue;
@@ -80,7 +83,7 @@ class Alternate : public Strategy {
       if (!any) return true;
       for (std::size_t v = 0; v < state.violated.size(); ++v) {
         const int row = state.violated[v], g = group_[row];
-        if (is_cut(row) == interior) continue;
+        if (side_of(row) != side) continue;
         // After block flips have failed, only the last violated row of the group is flipped (Murty).
         if (patience_[g] >= 0 || --count_[g] == 0) state.flip(row);
       }
@@ -91,8 +94,8 @@ class Alternate : public Strategy {
   // Solves the free rows of one side. Interior pass: free cut rows keep their impulse. Interface pass: the
   // interior rows stay in the system with their states held, which is what the effective mass at the
   // interface means.
-  bool solve(SolveState& state, bool interior) {
-    for (std::size_t r = 0; r < group_.size() && interior; ++r) {
+  bool solve(SolveState& state, Side side) {
+    for (std::size_t r = 0; r < group_.size() && side == Side::interior; ++r) {
       if (is_cut(static_cast<int>(r)) && state.row_state[r] == RowState::free)
         state.row_state[r] = RowState::held;
     }

@@ -116,7 +116,7 @@ CostSample sample_with(const KernelCost& truth, std::uint64_t seed) {
     sample.parts.part_of_body.push_back(i < parts ? i : random.integer(0, parts - 1));
   sample.factorizations = random.integer(2, 9);
   sample.active_share = random.uniform(0.3, 0.9);
-  sample.t_s_ms = modelled_ms(sample, truth, true);
+  sample.t_s_ms = modelled_ms(sample, truth, Knowledge::of_sample);
   const CostFeatures features =
       CostCounter(sample.graph, truth.kernel, sample.active_share).count(sample.parts);
   const auto units = unit_costs_ms(features, truth.threads, sample.factorizations);
@@ -133,12 +133,12 @@ TEST(CostFit, FindsTheCostsThatMadeTheTimes) {
     for (std::uint64_t seed = 0; seed < 60; ++seed)
       (seed % 2 == 0 ? fitted : others).push_back(sample_with(truth, seed));
     const KernelCost found = fit_cost(fitted);
-    EXPECT_LT(median_error(others, found, true), 1e-3);
-    EXPECT_GT(median_error(others, found, false), 1e-2);  // their factorisations are drawn
+    EXPECT_LT(median_error(others, found, Knowledge::of_sample), 1e-3);
+    EXPECT_GT(median_error(others, found, Knowledge::of_partition), 1e-2);  // their factorisations are drawn
     EXPECT_GE(found.factorizations.most, 2);
     EXPECT_LE(found.factorizations.most, 15);
   }
-  EXPECT_TRUE(std::isnan(median_error({}, {}, true)));
+  EXPECT_TRUE(std::isnan(median_error({}, {}, Knowledge::of_sample)));
 }
 
 // Time that no stage has, of most solves a quarter, is spread over all terms.
@@ -151,7 +151,7 @@ TEST(CostFit, HalfOfTheSolvesTakeMoreThanModelled) {
     samples.back().t_s_ms *= seed % 4 == 0 ? 2 : 1.25;
   }
   const KernelCost found = fit_cost(samples);
-  EXPECT_LT(median_error(samples, found, true), 1e-3);
+  EXPECT_LT(median_error(samples, found, Knowledge::of_sample), 1e-3);
 }
 
 // Two solves of a cell of which one takes a fifth less than modelled and one a fifth more, and a cell of its own.
@@ -164,12 +164,12 @@ TEST(CostFit, StepsOfACellMakeUpForEachOther) {
   std::vector<CostSample> samples;
   for (const double share : {0.8, 1.2, 1.1}) {
     samples.push_back(sample_with(truth, 1));
-    samples.back().t_s_ms = share * modelled_ms(samples.back(), truth, false);
+    samples.back().t_s_ms = share * modelled_ms(samples.back(), truth, Knowledge::of_partition);
     samples.back().cell = samples.size() < 3 ? 1 : 2;
   }
   EXPECT_NEAR(median_cell_error(std::span(samples).first(2), truth), 0, 1e-12);
   EXPECT_NEAR(median_cell_error(std::span(samples).last(1), truth), 1 - 1 / 1.1, 1e-12);
-  EXPECT_NEAR(median_error(samples, truth, false), 1 - 1 / 1.2,
+  EXPECT_NEAR(median_error(samples, truth, Knowledge::of_partition), 1 - 1 / 1.2,
               1e-12);  // of 1 / 0.8 - 1, 1 - 1 / 1.2 and 1 - 1 / 1.1
 }
 

@@ -328,6 +328,22 @@ TEST(CheapestTrial, is_the_earliest_of_equal_ones) {
             make_partitioner("multilevel" + bound)->run(graph).part_of_body);
 }
 
+// Where nothing can be told apart the first trial stands.
+TEST(CheapestTrial, is_one_where_all_times_are_infinite) {
+  KernelCost cost{CostKernel::schur_rows, 1, {}, {}, {}};
+  std::ranges::fill(cost.cost, std::numeric_limits<double>::max());
+  const std::string path = testing::TempDir() + "dear_test.toml";
+  std::ofstream(path, std::ios::binary) << calibration_text({}, {cost});
+  const std::string fingerprint = read_calibration("--calibration", path);
+  std::remove(path.c_str());
+  Random random(1);
+  const BodyGraph graph = pile(random, 12, 12, 4).graph();
+  const Partition first = make_partitioner("multilevel")->run(graph);
+  ASSERT_TRUE(std::isinf(modelled_ms(cost_counter(graph, cost).count(first), cost)));
+  EXPECT_EQ(make_partitioner("multilevel-cost@seeds=3@calibration=" + fingerprint)->run(graph).part_of_body,
+            first.part_of_body);
+}
+
 TEST(CheapestTrial, goes_on_from_the_last_seed_with_the_first) {
   Random random(1);
   const BodyGraph graph = pile(random, 4, 4, 3).graph();

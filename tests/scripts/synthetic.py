@@ -112,6 +112,6 @@ def run_script(name, *arguments, **options):
     return subprocess.run([str(SCRIPTS / name), *map(str, arguments)],
                           capture_output=True,
                           text=True,
-                          timeout=120,
+                          timeout=900,  # ends what hangs; a busy machine takes its time
                           check=False,
                           **options)

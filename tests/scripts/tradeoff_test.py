@@ -189,6 +189,11 @@ class TradeoffTest(StandInCase):
         for name in ("time_to_accuracy", "crossover", "accuracy_profile"):
             self.assertTrue((self.directory / "out" / f"{name}.png").exists(), name)
 
+    def test_one_table_alone(self):
+        self.run_it("--steps", 20, "--tables", "partitions")
+        self.assertEqual([path.name for path in (self.directory / "out").iterdir()], ["tradeoff_partitions.csv"])
+        self.assertTrue(all("--partitioner all" in call for call in self.calls() if call.startswith("replay")), self.calls())
+
     def test_options(self):
         self.assertIn("--most-sweeps is '0'", self.run_it("--most-sweeps", 0, code=1).stderr)
 

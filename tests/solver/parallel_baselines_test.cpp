@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "solver/registry.h"
@@ -110,6 +111,14 @@ TEST(ApgdTest, MoreIterationsNeverLeaveMore) {
     last = residual;
   }
   EXPECT_LT(last, 0.01 * first);
+}
+
+TEST(ApgdTest, EndsWhereNothingIsANumber) {
+  const StepProblem problem = make_pile(1, {.columns = 2, .rows = 2, .layers = 2});
+  const std::size_t rows = static_cast<std::size_t>(problem.row_count());
+  Solution solution{std::vector<double>(rows, std::numeric_limits<double>::quiet_NaN()), {}};
+  const auto solver = make_step_solver("apgd@sweeps=5", {});
+  EXPECT_NE(solver->solve(problem, sliced_parts(problem.body_count(), 1), solution).status, SolveStatus::ok);
 }
 
 TEST(ApgdTest, EndsWhereTheTargetIsMet) {

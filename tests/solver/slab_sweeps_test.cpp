@@ -309,6 +309,24 @@ TEST(SlabSweepsTest, GoOnWhereTheRunBeforeEnded) {
   EXPECT_EQ(in_turns.velocity, at_once.velocity);
 }
 
+// The graph of a number of slabs is kept from one step to the next.
+TEST(SlabSweepsTest, AreThoseOfNewOnesOnAnotherStep) {
+  const StepProblem small = problem_of(9), large = problem_of(30);
+  Sweeps kept(small);
+  for (const StepProblem* problem : {&large, &small, &small, &large}) {
+    Sweeps fresh(*problem);
+    fresh.run(7);
+    kept.step.prepare(*problem, &kept.tasks);
+    kept.impulse.assign(kept.step.row_count(), 0.0);
+    std::ranges::copy(problem->warm_impulse, kept.impulse.begin());
+    kept.velocity.resize(6 * static_cast<std::size_t>(kept.step.body_count()));
+    kept.step.velocity(kept.impulse, kept.velocity);
+    kept.sweeps.bind(kept.step, kept.tasks);
+    kept.run(7);
+    EXPECT_EQ(kept.impulse, fresh.impulse);
+  }
+}
+
 TEST(SlabSweepsTest, GiveTheSameBytesOnAnyNumberOfThreadsInAnyOrder) {
   const StepProblem problem = problem_of(30);
   Sweeps one(problem);

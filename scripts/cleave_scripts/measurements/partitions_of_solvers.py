@@ -10,7 +10,6 @@ from cleave_scripts.results.programs import replay
 from cleave_scripts.results.rows import relative_residual, total_ms
 
 KEY = ("scene", "bodies", "cfm", "step")
-PARTITIONERS = ("mindp", "maxdp", "bfs", "mr", "mix", "multilevel", "geometric", "random")
 REFINERS = ("none", "fm")
 DIRECT = ("schur", "auto:schur-bodies")
 ITERATIVE = ("pgs-parts", "split-domains")
@@ -22,7 +21,7 @@ COLUMNS = (*KEY, "rows", "solver", "partitioner", "refiner", "interface_rows", "
 
 def partition_rows(program, scratch, files, most_sweeps, threads):
     solvers = (*DIRECT, *(f"{name}@until={LIMIT:g}@sweeps={most_sweeps}" for name in ITERATIVE))
-    yield from replay(program, scratch / "parts", files, "--solver", ",".join(solvers), "--partitioner", ",".join(PARTITIONERS),
+    yield from replay(program, scratch / "parts", files, "--solver", ",".join(solvers), "--partitioner", "all",
                       "--refiner", ",".join(REFINERS), "--threads", threads, "--repeats", 3)
 
 

@@ -19,12 +19,24 @@ FIELD_OF_VIEW = 19  # degrees, from the lower to the upper edge
 
 def pack(motion, stride):
     """A recording as JSON: a description and all numbers, compressed. See viewer/web/source/recording.js."""
-    measured = motion.measured
-    kept = numpy.arange(len(measured.step))[::-1][::stride][::-1]  # the last one always
-    frames = numpy.unique(
-        numpy.concatenate(
-            [numpy.arange(len(motion.step))[::stride],
-             numpy.searchsorted(motion.step, measured.step[kept])]))
+    kept = numpy.arange(len(motion.measured.step))[::-1][::stride][::-1]  # the last one always
+    arrays, codes = _arrays(motion, stride, kept)
+    described, data = join(arrays)
+    description = {"arrays": described, **codes, **_description(motion), "note": _note(motion, stride, codes["unit_m"])}
+    packed = {"description": description, "data": base64.b64encode(gzip.compress(data, 6, mtime=0)).decode()}
+    return json.dumps(packed).replace("</", "<\\/")
+
+
+def _frames(motion, stride, kept):
+    """Every stride-th, and those of the measured steps that are kept."""
+    return numpy.unique(
+        numpy.concatenate([numpy.arange(len(motion.step))[::stride],
+                           numpy.searchsorted(motion.step, motion.measured.step[kept])]))
+
+
+def _arrays(motion, stride, kept):
+    """({name: numbers}, what the codes among them mean)"""
+    measured, frames = motion.measured, _frames(motion, stride, kept)
     origin, unit, position = quantized_positions(motion.position[frames])
     parts, no_part = part_codes(measured["part"][kept])
     edges = [measured.edges(index) for index in kept]
@@ -50,22 +62,19 @@ def pack(motion, stride):
         "interfaceRows": measured["interface_rows"].astype("<i4"),
         "ok": measured["ok"].astype("u1"),
     }
-    described, data = join(arrays)
+    return arrays, {"origin_m": origin.tolist(), "unit_m": unit, "no_part": no_part,
+                    "ranges": {"residual": residual_range, "impulse": impulse_range}}
+
+
+def _description(motion):
+    """What does not change from frame to frame."""
     extent = Extent.of(motion, _settling_frames(motion))
-    description = {
-        "arrays": described,
+    return {
         "bodies": motion.bodies,
         "planned_steps": int(motion.attributes["steps"]),
         "h_s": float(motion.attributes["h_s"]),
         "combinations": [_combination_name(names) for names in motion.combinations],
         "mass_kg": motion.mass_kg.tolist(),
-        "origin_m": origin.tolist(),
-        "unit_m": unit,
-        "no_part": no_part,
-        "ranges": {
-            "residual": residual_range,
-            "impulse": impulse_range
-        },
         "geoms": [_geom(geom) for geom in motion.geoms if geom.body >= 0],
         "ground": _ground(motion, extent),
         "view": _view(look_of(motion), extent),
@@ -78,10 +87,7 @@ def pack(motion, stride):
         "edge_casing_scale": EDGE_CASING_SCALE,
         "inner_edge_colour": INNER_EDGE,
         **_ramp(),
-        "note": _note(motion, stride, unit),
     }
-    packed = {"description": description, "data": base64.b64encode(gzip.compress(data, 6, mtime=0)).decode()}
-    return json.dumps(packed).replace("</", "<\\/")
 
 
 def _settling_frames(motion):

@@ -1,4 +1,4 @@
-#include "harness/files/write_all.h"
+#include "harness/base/write_all.h"
 
 #include <unistd.h>
 
