@@ -24,8 +24,9 @@ def solve(program, scratch, files, repeats, way, *options):
     not counted: so every process is solving for as long as another is at cells that count. Where that did not hold, all
     is solved again."""
     directories = [scratch / f"replay{number}" for number in range(way.processes)]
+    before, after = (_in_another_folder(files[0], scratch / name) for name in ("before", "after"))
     for _ in range(ATTEMPTS):
-        solved = replay_side_by_side(program, directories, [files[0], *files, files[0]], *options, "--repeats", repeats,
+        solved = replay_side_by_side(program, directories, [before, *files, after], *options, "--repeats", repeats,
                                      "--threads", way.threads, all_ok=True)
         uncounted = len(solved[0]) // (len(files) + 2)
         ends_s = [(directory / "steps.csv").stat().st_mtime for directory in directories]
@@ -33,6 +34,15 @@ def solve(program, scratch, files, repeats, way, *options):
             return [_merged(rows, way) for rows in zip(*(rows[uncounted:-uncounted] for rows in solved), strict=True)]
         say(f"solves side by side ended {max(ends_s) - min(ends_s):.2g} s apart, so the last that count were alone")
     raise ResultError(f"solves side by side were not at the same time, {ATTEMPTS} times; the machine has other work")
+
+
+def _in_another_folder(file, folder):
+    """A replay takes no file twice."""
+    folder.mkdir(exist_ok=True)
+    again = folder / file.name
+    again.unlink(missing_ok=True)
+    again.hardlink_to(file)
+    return again
 
 
 def _together(ends_s, tails_s):
