@@ -9,6 +9,7 @@
 #include "harness/base/csv_text.h"
 #include "harness/base/names.h"
 #include "harness/base/printable_text.h"
+#include "harness/base/refusals.h"
 #include "harness/campaign/campaign_index.h"
 #include "harness/commands/check_arguments.h"
 #include "harness/commands/collected_tables.h"
@@ -128,6 +129,21 @@ std::vector<fs::path> files_read(std::span<const std::string> directories,
   return files;
 }
 
+// What a changed spec left in a campaign's directory counts like the rest, and is told.
+void tell_earlier_cells(const std::vector<std::string>& directories) {
+  for (const std::string& directory : directories) {
+    const fs::path index = fs::path(directory) / kIndexFile;
+    std::error_code none;
+    if (!fs::exists(index, none)) continue;
+    std::vector<IndexRow> rows;  // of a damaged index nothing is told: the rows of cells do not come from it
+    if (!wrong_in([&] { rows = read_index(index); }).empty()) continue;
+    const auto earlier = std::ranges::count_if(rows, [](const IndexRow& row) { return row.number == 0; });
+    if (earlier > 0)
+      say(directory + ": " + std::to_string(earlier) +
+          " cells are of an earlier spec, and their rows are taken too");
+  }
+}
+
 int collect(const CollectOptions& options) {
   if (options.directories.empty()) throw std::invalid_argument("DIR: an output directory is required");
   const CollectedTables files(options.out);
@@ -137,6 +153,7 @@ int collect(const CollectOptions& options) {
   const std::vector<fs::path> read = files_read(options.directories, cells);
   for (const fs::path& path : {files.rows, files.cells, files.columns, files.checksums})
     check_not_read(path, read);
+  tell_earlier_cells(options.directories);
   GrowingFile rows(files.rows);
   TableOfCells table;
   const Counts counts = write_rows(cells, rows, table);

@@ -33,8 +33,8 @@ std::string key_text(const RunOptions& options) {
   return json.text();
 }
 
-int run(const std::map<std::string, std::string>& given, bool print_key,
-        const std::vector<std::string>& argv) {
+int run(std::map<std::string, std::string> given, bool print_key, const std::vector<std::string>& argv) {
+  if (print_key) given.emplace("out", "-");  // nothing is written
   const RepeatedOptions all = with_config(given, "run", &CommandSet::run);
   const RunOptions options = parse_run_options(all.given, all.stored);
   if (print_key) {

@@ -322,6 +322,10 @@ TEST(Sweep, AChangedSpecRunsWhatIsNewAndKeepsWhatIsOld) {
   EXPECT_EQ(campaign.index().column("number"), Words({"1", "2", "0"}));
   EXPECT_EQ(campaign.manifest_times().size(), 3u);
   EXPECT_EQ(campaign.failures(), "");
+  const ProgramResult collected = run_cleave({"collect", campaign.out(), "--out", campaign / "all.csv"});
+  EXPECT_NE(collected.err.find("out: 1 cells are of an earlier spec, and their rows are taken too\n"),
+            std::string::npos)
+      << collected.err;
 }
 
 // A campaign that was killed between its index and their checksums: what its directories vouch for stays known.
