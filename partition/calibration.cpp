@@ -215,19 +215,17 @@ std::string read_calibration(const std::string& option, const std::string& text)
 }
 
 bool is_known_calibration(const std::string& fingerprint) {
-  if (fingerprint == shipped().fingerprint) return true;
+  shipped();  // which is known from then on
   const std::scoped_lock lock(known().mutex);
   return known().calibrations.contains(fingerprint);
 }
 
 const Calibration& known_calibration(const std::string& fingerprint) {
-  if (fingerprint == shipped().fingerprint) return shipped();
-  const std::scoped_lock lock(known().mutex);
-  const auto found = known().calibrations.find(fingerprint);
-  if (found == known().calibrations.end())
+  if (!is_known_calibration(fingerprint))
     throw std::invalid_argument("calibration: " + fingerprint + " is not the shipped one, " +
                                 shipped().fingerprint + "; name its file: --calibration FILE");
-  return found->second;
+  const std::scoped_lock lock(known().mutex);
+  return known().calibrations.at(fingerprint);
 }
 
 std::vector<KernelCost> kernel_costs(const Settings& settings) {

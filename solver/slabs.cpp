@@ -90,8 +90,6 @@ void Slabs::wait_for_neighbours(int begin, int gap) {
 // into as many slabs.
 void Slabs::build_graph(int sweeps) {
   if (count_ == graph_count_ && sweeps == graph_sweeps_) return;
-  graph_count_ = count_;
-  graph_sweeps_ = sweeps;
   const int gaps = count_ - 1;
   waits_.clear();
   places_.resize(sweeps * tasks_of_sweep());
@@ -109,7 +107,10 @@ void Slabs::build_graph(int sweeps) {
     places_[end] = 0;
   }
   places_.push_back(kLastPlace);
+  graph_sweeps_ = 0;  // until it is built: a solver that found no memory may be asked again
   graph_.build(sweeps * tasks_of_sweep() + 1, waits_, places_);
+  graph_count_ = count_;
+  graph_sweeps_ = sweeps;
 }
 
 }  // namespace cleave

@@ -99,8 +99,7 @@ void Campaign::keep_earlier(const std::vector<CampaignCell>& all) {
   const bool whole = is_whole(share);
   for (IndexRow row : read_index(share / kIndexFile)) {
     if (names.contains(row.cell)) continue;
-    const bool has_log = row.log != "-" && still_stands(options_.out, row);
-    if (!whole && !has_log) row = unsure(row);
+    if (!whole && !(row.log != "-" && still_stands(options_.out, row))) row = unsure(row);
     row.number = 0;
     if (row.is_pending()) take_if_complete(options_.out, row);
     if (still_stands(options_.out, row)) earlier_.push_back(std::move(row));

@@ -134,8 +134,9 @@ class Expansion {
   }
 
   void exclude(std::vector<Options>& found) {
-    for (const Options& options : found)
-      for (const auto& [key, value] : options) values_[key].insert(value);
+    for (const Exclusion& exclusion : exclusions_)
+      for (const Dimension& dimension : exclusion.unwanted)
+        for (const Options& options : found) values_[dimension.key].insert(options.at(dimension.key));
     for (Exclusion& exclusion : exclusions_)
       exclusion.removed += std::erase_if(found, [&](const Options& options) {
         return std::ranges::all_of(exclusion.unwanted, [&](const Dimension& dimension) {
@@ -217,7 +218,8 @@ class Expansion {
 
   const std::string& file_;
   std::vector<std::string> known_;
-  std::map<std::string, std::set<std::string>> values_;  // by key, of cells that exclusions looked at
+  std::map<std::string, std::set<std::string>>
+      values_;  // by key of exclusions, of the cells that they looked at
   std::vector<Exclusion> exclusions_;
   std::vector<CampaignCell> cells_;
   std::map<std::string, Maker> makers_;  // by the name of the cell, who made it

@@ -1,6 +1,5 @@
 // cleave rerun: one run again, from its manifest and the files that it read; its rows must be those that it left, in all but times and
 // threads.
-#include <array>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -10,15 +9,13 @@
 #include "harness/commands/check_arguments.h"
 #include "harness/commands/command.h"
 #include "harness/commands/repeated_run.h"
+#include "harness/experiment/repeated_options.h"
 #include "harness/files/manifest.h"
 
 namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Of which a manifest may know no more than what the file said.
-constexpr std::array kNameFiles = {"scene", "partitioner", "body-order", "calibration"};
 
 struct RerunOptions {
   std::string cell, out, threads;
@@ -52,7 +49,7 @@ std::function<int()> declare_rerun(CLI::App& app, const std::vector<std::string>
       ->type_name("DIR");
   app.add_option("--threads", options->threads, "threads of a solve, in place of those it had")
       ->type_name("N");
-  for (const char* name : kNameFiles)
+  for (const char* name : kOptionsOfFiles)
     app.add_option("--" + std::string(name), options->files[name],
                    "as the run was given it, where that names a file")
         ->type_name(name == std::string("calibration") ? "FILE" : "TEXT");

@@ -49,10 +49,12 @@ int simulate(const std::string& command, const std::vector<std::string>& argv, c
     RunSummary summary =
         simulation.run(write, [&line](long long done, long long total) { line.update(done, total); });
     if (motion) motion->finish();
-    if (watch && !summary.interrupted) tell_findings(options.out, watch->findings());
-    if (watch && summary.interrupted)
+    if (watch && summary.interrupted) {
       say("--explain-model: interrupted, so that nothing is explained and " + std::string(kFindingsFile) +
           " is not written");
+    } else if (watch) {
+      tell_findings(options.out, watch->findings());
+    }
     return summary;
   });
 }

@@ -47,6 +47,11 @@ struct VerifyOptions {
   std::string calibration;  // the same
 };
 
+// The calibration that is named; empty: none.
+struct Calibrated {
+  std::string file, fingerprint;
+};
+
 struct CompleteRun {
   fs::path directory;
   int other_threads;                         // than it had
@@ -55,15 +60,14 @@ struct CompleteRun {
 
 // Complete runs below a directory, at most so many, evenly spread over their names: in a campaign these are fingerprints of
 // options, so that which are taken is as good as chance and always the same.
-std::vector<CompleteRun> sample_of_runs(const std::string& path, int most, const std::string& calibration) {
-  const std::string fingerprint = calibration.empty() ? "" : read_calibration("--calibration", calibration);
+std::vector<CompleteRun> sample_of_runs(const std::string& path, int most, const Calibrated& by) {
   std::vector<CompleteRun> runs;
   visit_cells(find_measured_cells(std::span(&path, 1)),
               [&](const MeasuredCell& cell, const StoredManifest& manifest) {
                 if (manifest.command != "run" || manifest.state != "complete") return;
                 runs.push_back({cell.directory, manifest.option("threads") == "1" ? 2 : 1, {}});
-                if (!fingerprint.empty() && manifest.option("calibration") == fingerprint)
-                  runs.back().files.emplace("calibration", calibration);
+                if (!by.file.empty() && manifest.option("calibration") == by.fingerprint)
+                  runs.back().files.emplace("calibration", by.file);
               });
   if (runs.empty())
     throw std::invalid_argument("--rerun: " + path + " holds no run of cleave run that came to its end");
@@ -94,12 +98,13 @@ bool rerun_sample(const std::string& program, const std::vector<CompleteRun>& sa
 int verify(const VerifyOptions& options, const std::string& program) {
   if (options.paths.empty())
     throw std::invalid_argument("PATHS: problem files, output directories or collected tables are required");
-  if (!options.calibration.empty()) read_calibration("--calibration", options.calibration);
+  const Calibrated by{options.calibration, options.calibration.empty()
+                                               ? ""
+                                               : read_calibration("--calibration", options.calibration)};
   std::vector<std::vector<CompleteRun>> samples;
   if (!options.rerun.empty()) {
     const int most = parse_integer("--rerun", options.rerun, {1, std::numeric_limits<int>::max()});
-    for (const std::string& path : options.paths)
-      samples.push_back(sample_of_runs(path, most, options.calibration));
+    for (const std::string& path : options.paths) samples.push_back(sample_of_runs(path, most, by));
   }
   CheckList list;
   for (const std::string& path : options.paths) {

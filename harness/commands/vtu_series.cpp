@@ -1,5 +1,6 @@
 #include "harness/commands/vtu_series.h"
 
+#include <list>
 #include <stdexcept>
 #include <tuple>
 
@@ -21,29 +22,12 @@ fs::path picture_name(const fs::path& out, std::size_t number) {
   return out.parent_path() / (out.stem().string() + "_" + std::to_string(number) + ".vtu");
 }
 
-// Files under other names until all are there; gone where that does not come to be.
-class PicturesAside {
- public:
-  PicturesAside() = default;
-  ~PicturesAside() {
-    std::error_code ignored;
-    for (const fs::path& path : paths_) fs::remove(part_name_of(path), ignored);
-  }
-  PicturesAside(const PicturesAside&) = delete;
-  PicturesAside& operator=(const PicturesAside&) = delete;
-
-  void add(const fs::path& path, const std::string& text) {
-    paths_.push_back(path);
-    write_whole_file(part_name_of(path), text);
-  }
-  void publish() {
-    for (const fs::path& path : paths_) publish_part_file(path);
-    paths_.clear();
-  }
-
- private:
-  std::vector<fs::path> paths_;
-};
+// Whole under its name once it is published.
+void add_file(const fs::path& path, const std::string& text, std::list<GrowingFile>& aside) {
+  GrowingFile& file = aside.emplace_back(path);
+  file.write(text);
+  file.finish();
+}
 
 // Of one scene and later than the one before.
 void check_follows(const std::string& path, const ProblemFile& file, const std::string& before,
@@ -65,7 +49,7 @@ void remove_rest(const fs::path& out, std::size_t count) {
 int write_vtu_series(const std::vector<std::string>& files, const fs::path& out, bool force) {
   for (std::size_t k = 0; k < files.size(); ++k) check_out_file(picture_name(out, k), force);
   stop_on_signals();
-  PicturesAside aside;
+  std::list<GrowingFile> aside;
   std::vector<VtuAtTime> pictures;
   ProblemFile last;
   for (std::size_t k = 0; k < files.size(); ++k) {
@@ -73,13 +57,13 @@ int write_vtu_series(const std::vector<std::string>& files, const fs::path& out,
     ProblemFile file = read_problem_file_aloud(files[k]);
     if (k > 0) check_follows(files[k], file, files[k - 1], last);
     const fs::path picture = picture_name(out, k);
-    aside.add(picture, in_context(files[k], [&] { return vtu_text(file); }));
+    add_file(picture, in_context(files[k], [&] { return vtu_text(file); }), aside);
     pictures.push_back({file.step * file.problem.h_s, picture.filename().string()});
     last = std::move(file);
   }
-  aside.publish();
+  add_file(out, pvd_text(pictures), aside);
+  for (GrowingFile& file : aside) file.publish();
   if (force) remove_rest(out, files.size());
-  write_whole_file(out, pvd_text(pictures));
   say(out.string() + ": " + std::to_string(pictures.size()) + " steps");
   return kExitOk;
 }

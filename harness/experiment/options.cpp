@@ -89,8 +89,11 @@ void check_owned(const RunOptions& options, const std::set<std::string>& stored,
   if (with_world) all.push_back(&options.friction);
   for (const auto& [name, value] : options.common) {
     if (stored.contains(name)) continue;
-    if (find_common_parameter(name) != nullptr) check_is_read(name, all, idle);
-    if (find_common_parameter(name) == nullptr && with_world) check_is_read(name, {&options.scene});
+    if (find_common_parameter(name) != nullptr) {
+      check_is_read(name, all, idle);
+    } else if (with_world) {
+      check_is_read(name, {&options.scene});
+    }
   }
 }
 

@@ -1,7 +1,6 @@
 #include "harness/experiment/repeated_options.h"
 
 #include <algorithm>
-#include <array>
 #include <initializer_list>
 #include <stdexcept>
 
@@ -49,10 +48,8 @@ std::string item_of_file(const Given& options, const std::string& option) {
   return {};
 }
 
-constexpr std::array kNameFiles = {"scene", "partitioner", "refiner", "solver", "body-order"};
-
 void check_can_be_found(const Given& taken) {
-  for (const char* option : kNameFiles)
+  for (const char* option : kOptionsOfFiles)
     if (const std::string item = item_of_file(taken, option); !item.empty())
       throw std::invalid_argument("option " + std::string(option) + ": " + item +
                                   " is known by its content, not by its file; give --" + option +
@@ -91,7 +88,7 @@ bool is_another_scene(const Given& given, const Given& stored) {
 
 std::vector<std::string> options_of_files(const Given& stored) {
   std::vector<std::string> options;
-  for (const char* option : kNameFiles)
+  for (const char* option : kOptionsOfFiles)
     if (!item_of_file(stored, option).empty()) options.emplace_back(option);
   const std::string calibration = value_of(stored, "calibration");
   if (!calibration.empty() && !is_known_calibration(calibration)) options.emplace_back("calibration");

@@ -1,6 +1,7 @@
 // A run that was: the options its manifest holds, beside those given now.
 #pragma once
 
+#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -28,6 +29,10 @@ struct RepeatedOptions {
 RepeatedOptions repeated_options(const std::map<std::string, std::string>& stored,
                                  const std::map<std::string, std::string>& given, bool CommandSet::*command,
                                  const std::vector<std::string>& own);
+
+// The options that may name files.
+inline constexpr std::array kOptionsOfFiles = {"scene",  "partitioner", "refiner",
+                                               "solver", "body-order",  "calibration"};
 
 // The options of a run that a file decided of which they tell the content alone, by a fingerprint: whoever repeats the run has to
 // name it again.

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "harness/base/write_all.h"
 
@@ -111,7 +112,7 @@ GrowingFile::GrowingFile(const fs::path& path)
 }
 
 GrowingFile::~GrowingFile() {
-  ::close(descriptor_);
+  if (descriptor_ >= 0) ::close(descriptor_);
   if (!is_published_) ::unlink(part_name_of(path_).c_str());
 }
 
@@ -123,6 +124,7 @@ void GrowingFile::write(std::string_view bytes) {
 
 void GrowingFile::finish() {
   flush();
+  ::close(std::exchange(descriptor_, -1));  // many may wait for each other
   sync_file(part_name_of(path_));
 }
 

@@ -28,7 +28,7 @@ class GrowingFile {
   GrowingFile& operator=(const GrowingFile&) = delete;
 
   void write(std::string_view bytes);
-  void finish();   // all is on the disk, under part_name_of(path)
+  void finish();   // no more is written: all is on the disk, under part_name_of(path)
   void publish();  // after finish()
 
  private:

@@ -16,8 +16,9 @@ def draw(problems):
                 continue
             ax.plot(WORKERS, [problem.speed_up(solver, workers) for workers in WORKERS], **look, markersize=3, linewidth=1)
             if solver in problem.measured:
-                ax.plot(2 * APART ** (number - (len(marks) - 1) / 2), problem.base_ms / problem.measured[solver].time_ms, color=look["color"], marker=look["marker"],
-                        markersize=5.5, markeredgecolor=style.INK, markeredgewidth=0.7, zorder=5)
+                place = 2 * APART ** (number - (len(marks) - 1) / 2)
+                ax.plot(place, problem.base_ms / problem.measured[solver].time_ms, color=look["color"], marker=look["marker"], markersize=5.5,
+                        markeredgecolor=style.INK, markeredgewidth=0.7, zorder=5)
         scene, bodies, cfm = problem.key
         ax.set_title(f"{scene.replace('_', ' ')}, {bodies} bodies\n{problem.rows} rows, cfm {float(cfm):g}", fontsize=7.5)
         ax.set(xscale="log", yscale="log", xlabel="workers", ylabel="speed-up")

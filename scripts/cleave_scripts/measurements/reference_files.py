@@ -39,8 +39,9 @@ def _write_checksums(results):
 
 def _check_complete(stage, directory):
     """A stage that is kept may have lost files since it was done."""
-    missing = [f"{file} below {runs}" for file in RUN_FILES for runs, _ in stage.runs
-               if not any(name.startswith(f"{runs}/") for name, _ in run_files_below(directory, file))]
+    there = {file: [name for name, _ in run_files_below(directory, file)] for file in RUN_FILES}
+    missing = [f"{file} below {runs}" for file, names in there.items() for runs, _ in stage.runs
+               if not any(name.startswith(f"{runs}/") for name in names)]
     missing += [pattern for pattern, _ in stage.files if not any(directory.glob(pattern))]
     if missing:
         raise ResultError(f"stage {stage.name}: {directory} has no {' and no '.join(missing)}; nothing is stored. Take its line out "
