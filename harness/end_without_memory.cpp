@@ -1,5 +1,6 @@
-// Ends the program in one line where there is no memory left in a place from which no exception gets out: before main,
-// where a destructor needs some, or for the exception itself. Set before the initialisations of what is linked statically.
+// Ends the program in one line where there is no memory left in a place from which no exception gets out:
+// before main, where a destructor needs some, or for the exception itself. Set before the initialisations of
+// what is linked statically.
 #include <unistd.h>
 
 #include <cstdlib>

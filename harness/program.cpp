@@ -60,6 +60,9 @@ int print_about(const Program& program, std::span<const std::string> arguments) 
 
 int run_command(const Program& program, const Arguments& arguments) {
   const std::span<const std::string> given = std::span(arguments).subspan(1);
+  for (const std::string& argument : given)
+    if (!is_utf8(argument))
+      throw std::invalid_argument("argument '" + argument + "' is not UTF-8, in which manifests hold it");
   check_first(program, given);
   const auto command = std::ranges::find(program.commands, given.front(),
                                          [](const Command& row) { return std::string(row.name); });

@@ -1,5 +1,5 @@
-// What every program of this project does: finds the command, parses its options, turns every error into one line on stderr
-// and an exit code.
+// What every program of this project does: finds the command, parses its options, turns every error into one
+// line on stderr and an exit code.
 #pragma once
 
 #include <span>

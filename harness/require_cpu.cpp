@@ -7,8 +7,8 @@
 
 namespace {
 
-// The features of x86-64-v3 one by one: clang 14 knows neither the whole by name nor the last three. AVX2 counts only
-// where the system saves its registers.
+// The features of x86-64-v3 one by one: clang 14 knows neither the whole by name nor the last three. AVX2
+// counts only where the system saves its registers.
 bool has_x86_64_v3() {
   unsigned int eax = 0, ebx = 0, ecx = 0, edx = 0;
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&

@@ -1,13 +1,14 @@
-// auto: the partitioner, size of parts and refiner whose modelled time (cost_model.h) is least, and with cost-kernel `any`
-// the kernel.
+// auto: the partitioner, size of parts and refiner whose modelled time (cost_model.h) is least, and with
+// cost-kernel `any` the kernel.
 //
-// Candidates are one part with all bodies, and every partitioner, max-bodies and refiner of the table below whose parts
-// are smaller than the whole, each with every kernel that is asked for; `monolithic` splits nothing and is one of one part, and
-// `schur-nested` has its parts by recursion (nested.h), in a tree of pairs. What splits must be modelled to save a twentieth
-// of what one part takes: the model is off by more, and splitting takes time of its own, which it does not count. The first
-// of equal ones is taken.
-// Looking takes longer than many a solve, so a choice serves while the graph is of its size: it is made on the first graph
-// with an edge, and again on one whose edges are a quarter more or a fifth fewer. What was chosen is Partition::choice.
+// Candidates are one part with all bodies, and every partitioner, max-bodies and refiner of the table below
+// whose parts are smaller than the whole, each with every kernel that is asked for; `monolithic` splits
+// nothing and is one of one part, and `schur-nested` has its parts by recursion (nested.h), in a tree of
+// pairs. What splits must be modelled to save a twentieth of what one part takes: the model is off by more,
+// and splitting takes time of its own, which it does not count. The first of equal ones is taken.
+// Looking takes longer than many a solve, so a choice serves while the graph is of its size: it is made on
+// the first graph with an edge, and again on one whose edges are a quarter more or a fifth fewer. What was
+// chosen is Partition::choice.
 #include <algorithm>
 #include <array>
 #include <limits>

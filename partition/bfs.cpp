@@ -3,8 +3,8 @@
 // the queue joins next. A part that is closed drops its queue.
 //
 // The paper does not say whether the search begins anew with every part. So it does with restart=part; with
-// restart=graph the bodies stand in one order, breadth first from the lowest body that is in it not yet, and every
-// max_bodies of them are a part, which need not be connected then.
+// restart=graph the bodies stand in one order, breadth first from the lowest body that is in it not yet, and
+// every max_bodies of them are a part, which need not be connected then.
 #include <algorithm>
 #include <memory>
 #include <vector>

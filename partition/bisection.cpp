@@ -80,8 +80,8 @@ int Bisection::farthest(const LevelGraph& graph, int seed) {
   return queue_.back();
 }
 
-// Greedy growing (Karypis and Kumar 1998): side 0 takes the node next to it that adds least to the cut, until it has what is
-// wanted. An island that is used up is followed by the lowest node that is left.
+// Greedy growing (Karypis and Kumar 1998): side 0 takes the node next to it that adds least to the cut, until
+// it has what is wanted. An island that is used up is followed by the lowest node that is left.
 void Bisection::grow(const LevelGraph& graph, int wanted, int seed, std::vector<char>& side) {
   const int nodes = graph.node_count();
   side.assign(nodes, 1);
@@ -117,7 +117,8 @@ void Bisection::grow(const LevelGraph& graph, int wanted, int seed, std::vector<
   }
 }
 
-// Gains of all nodes, and into the buckets, which are empty before, those at the cut, or all where bodies are above the bounds.
+// Gains of all nodes, and into the buckets, which are empty before, those at the cut, or all where bodies are
+// above the bounds.
 Bisection::Moment Bisection::take(const LevelGraph& graph, const std::vector<char>& side) {
   const int nodes = graph.node_count();
   filled_ = {};
@@ -184,7 +185,8 @@ int Bisection::best(const LevelGraph& graph, int side) {
   return -1;
 }
 
-// The node to move next, -1 for none: of the side that is above its bound, else of greater gain, else of the fuller side.
+// The node to move next, -1 for none: of the side that is above its bound, else of greater gain, else of the
+// fuller side.
 int Bisection::choose(const LevelGraph& graph) {
   const std::array<int, 2> room{most_[0] - filled_[0], most_[1] - filled_[1]};
   if (room[0] < 0 || room[1] < 0) return best(graph, room[0] < room[1] ? 0 : 1);

@@ -1,10 +1,12 @@
-// Splits a graph into two sides with little weight between them, each side with no more bodies than its bound.
+// Splits a graph into two sides with little weight between them, each side with no more bodies than its
+// bound.
 //
-// Two-way refinement after Fiduccia and Mattheyses (1982), with hill-climbing: in a pass every node may move once; always
-// the allowed move of greatest gain is made, be it negative; the pass ends when nothing is left to move or more
-// than `patience` moves in a row brought nothing, and is taken back to its best moment. Passes follow until one brings nothing. A move is
-// allowed if the side that it goes to stays within its bound, or is filled less (in bodies above the bound) than the other.
-// A moment is better if fewer bodies are above the bounds, then if the cut weighs less.
+// Two-way refinement after Fiduccia and Mattheyses (1982), with hill-climbing: in a pass every node may move
+// once; always the allowed move of greatest gain is made, be it negative; the pass ends when nothing is left
+// to move or more than `patience` moves in a row brought nothing, and is taken back to its best moment.
+// Passes follow until one brings nothing. A move is allowed if the side that it goes to stays within its
+// bound, or is filled less (in bodies above the bound) than the other. A moment is better if fewer bodies are
+// above the bounds, then if the cut weighs less.
 #pragma once
 
 #include <array>

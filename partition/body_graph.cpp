@@ -64,8 +64,8 @@ std::vector<int> row_starts(int bodies, std::span<const ConstraintLink> links) {
   return start;
 }
 
-// The half-links of every body from start[body] on, by neighbour. The list is symmetric, so transposing it keeps its rows and
-// sorts every row by neighbour: no comparison sort.
+// The half-links of every body from start[body] on, by neighbour. The list is symmetric, so transposing it
+// keeps its rows and sorts every row by neighbour: no comparison sort.
 std::vector<HalfLink> half_links(std::span<const ConstraintLink> links, const std::vector<int>& start) {
   const int n = static_cast<int>(start.size()) - 1;
   std::vector<HalfLink> by_body(start[n]), sorted(start[n]);

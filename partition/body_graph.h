@@ -31,10 +31,10 @@ class BodyGraph {
 
   // Merges links of the same pair into one edge; links with static geometry or of a body with itself are no
   // edge. mass_kg: (n). Throws std::invalid_argument naming the link when a body index is outside [-1, n) or
-  // rows < 1, naming the body when a mass is not finite and positive, and when all rows together exceed a quarter of the
-  // range of int (so that no weight, degree, cut or sum of two gains can overflow). step: of the run that the graph was
-  // taken from, where there is one. position_m: (n, 3) centres of the bodies, or empty where nobody knows them;
-  // throws naming the number that is not finite, and for another size.
+  // rows < 1, naming the body when a mass is not finite and positive, and when all rows together exceed a
+  // quarter of the range of int (so that no weight, degree, cut or sum of two gains can overflow). step: of
+  // the run that the graph was taken from, where there is one. position_m: (n, 3) centres of the bodies, or
+  // empty where nobody knows them; throws naming the number that is not finite, and for another size.
   BodyGraph(std::span<const double> mass_kg, std::span<const ConstraintLink> links,
             std::optional<int> step = std::nullopt, std::span<const double> position_m = {});
 
@@ -52,8 +52,8 @@ class BodyGraph {
     return position_m_[3 * static_cast<std::size_t>(body) + axis];
   }
 
-  // group_of_body: (n) numbers, of which equal ones mean one group, -1 none; or empty where no groups are named. Throws
-  // std::invalid_argument for another size.
+  // group_of_body: (n) numbers, of which equal ones mean one group, -1 none; or empty where no groups are
+  // named. Throws std::invalid_argument for another size.
   void set_groups(std::span<const int> group_of_body);
   bool has_groups() const { return !group_.empty(); }
   int group(int body) const { return group_[body]; }  // only where there are groups
@@ -83,7 +83,8 @@ class BodyGraph {
 
  private:
   void add_body(double mass_kg, int fixed_rows);
-  // As they are in another graph: a half edge, of the body that is added next, to a body of this one; a body after its half edges.
+  // As they are in another graph: a half edge, of the body that is added next, to a body of this one; a body
+  // after its half edges.
   void add_half_edge(int neighbour, const BodyGraph& from, int half_edge);
   void add_body(const BodyGraph& from, int body);
 

@@ -1,10 +1,11 @@
-// karger-cost and multilevel-cost: of several trials of `karger` or `multilevel` the one whose modelled time (cost_model.h) is
-// least,
+// karger-cost and multilevel-cost: of several trials of `karger` or `multilevel` the one whose modelled time
+// (cost_model.h) is least,
 //
 //     parts = P_t,  t = argmin t_s(P_t),  0 <= t < trials
 //
-// of equal ones the earliest. P_t are the parts of one trial with dice of seed (partition-seed + t) mod 2^31. Each is found as
-// the cut asks for, and only chosen by its time: `fm-cost` is what lowers the time of the one that is chosen.
+// of equal ones the earliest. P_t are the parts of one trial with dice of seed (partition-seed + t) mod 2^31.
+// Each is found as the cut asks for, and only chosen by its time: `fm-cost` is what lowers the time of the
+// one that is chosen.
 #include <limits>
 #include <map>
 #include <memory>

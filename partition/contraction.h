@@ -1,14 +1,15 @@
-// Random contraction (Karger, Global min-cuts in RNC, and other ramifications of a simple min-cut algorithm, SODA
-// 1993): edges are drawn one after the other without replacement, each with probability
+// Random contraction (Karger, Global min-cuts in RNC, and other ramifications of a simple min-cut algorithm,
+// SODA 1993): edges are drawn one after the other without replacement, each with probability
 //
 //     weight / sum of the weights of all edges not drawn so far,
 //
-// and the two nodes that an edge joins become one. An edge whose ends have become one node is passed over; one that
-// would make a node of more than most_bodies bodies is refused, and as nodes only grow it would be for ever after.
-// So every edge that is contracted is drawn with probability proportional to weight among those that may be.
+// and the two nodes that an edge joins become one. An edge whose ends have become one node is passed over;
+// one that would make a node of more than most_bodies bodies is refused, and as nodes only grow it would be
+// for ever after. So every edge that is contracted is drawn with probability proportional to weight among
+// those that may be.
 //
-// Draws are of integers below the sum of the weights, in a tree of partial sums (Fenwick, A new data structure for
-// cumulative frequency tables, 1994): exact on every machine, O(log edges) each.
+// Draws are of integers below the sum of the weights, in a tree of partial sums (Fenwick, A new data
+// structure for cumulative frequency tables, 1994): exact on every machine, O(log edges) each.
 #pragma once
 
 #include <span>

@@ -1,13 +1,15 @@
 // What a partition makes a kernel do in one solve, counted from the body graph and the part ids alone.
 //
 //   monolithic     one factor of all bodies
-//   schur-bodies   one factor, the bodies of a vertex cover of the cut last: what follows them is the interface
+//   schur-bodies   one factor, the bodies of a vertex cover of the cut last: what follows them is the
+//                  interface
 //   schur-nested   one factor, such a cover at every node of the tree of parts (cut_cover.h), children first
-//   schur-rows     a factor for every part; the interface is dense and has the cut rows whose weight is not zero
-//                  (Liu & Andrews 2022, section 2). How many these are the partition does not say: a share of them
+//   schur-rows     a factor for every part; the interface is dense and has the cut rows whose weight is not
+//                  zero (Liu & Andrews 2022, section 2). How many these are the partition does not say: a
+//                  share of them
 //
-// Flops are multiplications and additions, as the solvers count theirs. For schur-rows, with s_p sides of interface rows
-// in the subtree of column p of a part, b_p blocks below it and c rows of the interface,
+// Flops are multiplications and additions, as the solvers count theirs. For schur-rows, with s_p sides of
+// interface rows in the subtree of column p of a part, b_p blocks below it and c rows of the interface,
 //
 //     factor_flops = sum_p sum_{k=1..6} (6 b_p + k)^2            the factor L of the part
 //     form_flops   = sum_p (36 + 72 b_p) s_p + 6 s_p^2           Y = L^-1 J^T, then half of Y^T Y

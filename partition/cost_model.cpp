@@ -15,8 +15,8 @@ double sum(const CostFeatures& features, double PartCost::*of_part) {
   return total;
 }
 
-// A part is a task of schur-rows, which waits for the last of them. Other kernels deal out branches of one elimination
-// tree, whatever the parts.
+// A part is a task of schur-rows, which waits for the last of them. Other kernels deal out branches of one
+// elimination tree, whatever the parts.
 double local_work(const CostFeatures& features, int threads, double PartCost::*work) {
   if (features.kernel != CostKernel::schur_rows || threads == 1) return sum(features, work) / threads;
   std::vector<double> tasks;

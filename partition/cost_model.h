@@ -1,10 +1,11 @@
-// What a solve takes, modelled from counted work: a sum of terms, each the product of a count (cost_features.h) and of what
-// one of these costs on a machine, fitted by `cleave calibrate`.
+// What a solve takes, modelled from counted work: a sum of terms, each the product of a count
+// (cost_features.h) and of what one of these costs on a machine, fitted by `cleave calibrate`.
 //
 //     t_s = terms of the solve + factorizations * terms of a pass
 //
-// A pass is a factorisation with its assembly, substitutions and checks. How often a strategy factors is not a matter of the
-// partition, and not of the graph alone either; what can be expected of the graph is fitted too.
+// A pass is a factorisation with its assembly, substitutions and checks. How often a strategy factors is not
+// a matter of the partition, and not of the graph alone either; what can be expected of the graph is fitted
+// too.
 #pragma once
 
 #include <array>
@@ -30,8 +31,8 @@ struct CostTerm {
 inline constexpr int kCostTerms = 12;
 std::span<const CostTerm, kCostTerms> cost_terms();
 
-// Factorisations of a solve: more where there are more bodies and where their masses differ, fewer where a body is held by more
-// others, as in a tower at rest. Within what was fitted,
+// Factorisations of a solve: more where there are more bodies and where their masses differ, fewer where a
+// body is held by more others, as in a tower at rest. Within what was fitted,
 //
 //     ln factorizations = constant + per_log_body ln(bodies) + per_degree edges / bodies + per_mass_spread s
 //                         + per_fixed_row rows with static geometry / bodies,   in [0, ln(most)]
@@ -47,11 +48,12 @@ struct ExpectedFactorizations {
   static ExpectedFactorizations always(double factorizations);  // >= 1
 };
 
-// The share of cut rows whose weight is not zero, by which the interface of schur-rows is smaller than the cut: more of them in
-// a graph whose bodies are held by more others, and by more contacts each, as few rows of what lies still slide or part.
-// Within [0, 1],
+// The share of cut rows whose weight is not zero, by which the interface of schur-rows is smaller than the
+// cut: more of them in a graph whose bodies are held by more others, and by more contacts each, as few rows
+// of what lies still slide or part. Within [0, 1],
 //
-//     -ln(1 - share) = constant + per_log_degree ln(edges / bodies) + per_constraint constraints between bodies / edges
+//     -ln(1 - share) = constant + per_log_degree ln(edges / bodies)
+//                    + per_constraint constraints between bodies / edges
 struct ExpectedActiveShare {
   double constant = 0, per_log_degree = 0, per_constraint = 0;
 
@@ -80,8 +82,8 @@ CostCounter cost_counter(const BodyGraph& graph, const KernelCost& cost);
 // Of a solve with the expected number of factorisations.
 double modelled_ms(const CostFeatures& features, const KernelCost& cost);
 
-// The end of the last of tasks that are dealt out longest first, each to the worker that is free first (Graham, SIAM
-// Journal on Applied Mathematics 17, 1969). workers >= 1.
+// The end of the last of tasks that are dealt out longest first, each to the worker that is free first
+// (Graham, SIAM Journal on Applied Mathematics 17, 1969). workers >= 1.
 double longest_first_makespan(std::vector<double> work, int workers);
 
 }  // namespace cleave

@@ -6,9 +6,9 @@
 namespace cleave {
 namespace {
 
-// Of the edges for which is_cut(body, half-edge of it) holds, from both of their ends. uncovered: those of every body that no
-// chosen body covers. Bodies are kept in buckets by that count, each a heap by index; a count only falls, so a stale body is put
-// down where it belongs.
+// Of the edges for which is_cut(body, half-edge of it) holds, from both of their ends. uncovered: those of
+// every body that no chosen body covers. Bodies are kept in buckets by that count, each a heap by index; a
+// count only falls, so a stale body is put down where it belongs.
 template <class IsCut>
 std::vector<char> greedy_cover(const BodyGraph& graph, const IsCut& is_cut) {
   const int n = graph.body_count();

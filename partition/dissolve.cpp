@@ -60,8 +60,8 @@ class Dissolving {
     }
   }
 
-  // While this part is taken apart its bodies' gains only rise, so that the heap has what is true before what is stale; and a part
-  // that is full stays so.
+  // While this part is taken apart its bodies' gains only rise, so that the heap has what is true before what
+  // is stale; and a part that is full stays so.
   std::optional<Exchange> find(int part) {
     while (!moves_.empty()) {
       const Exchange move = moves_.pop();

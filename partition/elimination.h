@@ -1,10 +1,11 @@
-// How much it takes to factor the sparse symmetric matrix of some bodies, 6x6 blocks, an off-diagonal one where two bodies
-// share a constraint: counted, not factored.
+// How much it takes to factor the sparse symmetric matrix of some bodies, 6x6 blocks, an off-diagonal one
+// where two bodies share a constraint: counted, not factored.
 //
-// Bodies are eliminated by minimum degree (Tinney and Walker, Proceedings of the IEEE 55, 1967; George and Liu, SIAM
-// Review 31, 1989), the degree counted exactly: the body with the fewest neighbours goes next, the lowest place among
-// `bodies` on ties, and its neighbours become neighbours of each other. Bodies of a later stage go after all of an earlier one.
-// Solvers order with approximate degrees and join columns, so that their counts differ by some percent.
+// Bodies are eliminated by minimum degree (Tinney and Walker, Proceedings of the IEEE 55, 1967; George and
+// Liu, SIAM Review 31, 1989), the degree counted exactly: the body with the fewest neighbours goes next, the
+// lowest place among `bodies` on ties, and its neighbours become neighbours of each other. Bodies of a later
+// stage go after all of an earlier one. Solvers order with approximate degrees and join columns, so that
+// their counts differ by some percent.
 #pragma once
 
 #include <queue>
@@ -22,15 +23,16 @@ struct EliminatedColumn {
   int parent = -1;  // place of the column of its first block below; -1 where there is none
 };
 
-// Sum of the squared heights of the six columns of a block column: the multiplications and additions of its elimination.
+// Sum of the squared heights of the six columns of a block column: the multiplications and additions of its
+// elimination.
 double column_flops(int below);
 
 class Eliminator {
  public:
   explicit Eliminator(const BodyGraph& graph) : graph_(graph), local_of_body_(graph.body_count(), -1) {}
 
-  // Columns in order of elimination, of `bodies` and the edges among them. bodies: distinct. stage_of_body: (n), or
-  // empty where all are equal. Valid until the next call.
+  // Columns in order of elimination, of `bodies` and the edges among them. bodies: distinct. stage_of_body:
+  // (n), or empty where all are equal. Valid until the next call.
   std::span<const EliminatedColumn> run(std::span<const int> bodies, std::span<const int> stage_of_body = {});
 
  private:

@@ -1,10 +1,11 @@
-// fm-cost: moves single bodies while the modelled time of the solve falls (cost_model.h): the search of Fiduccia & Mattheyses
-// 1982 with another objective.
+// fm-cost: moves single bodies while the modelled time of the solve falls (cost_model.h): the search of
+// Fiduccia & Mattheyses 1982 with another objective.
 //
-// In a pass every body is looked at once, in the order of the search of fm: with the allowed move of greatest gain in the
-// cut, ties to the lowest body, then to the lowest part (move_search.h, bound as in fm), whatever its sign. It is made where
-// the modelled time falls, so that a move may cut more rows if the parts come out more equal or cheaper to factor. Passes
-// follow until one makes no move; every move lowers the time, so this ends.
+// In a pass every body is looked at once, in the order of the search of fm: with the allowed move of greatest
+// gain in the cut, ties to the lowest body, then to the lowest part (move_search.h, bound as in fm), whatever
+// its sign. It is made where the modelled time falls, so that a move may cut more rows if the parts come out
+// more equal or cheaper to factor. Passes follow until one makes no move; every move lowers the time, so this
+// ends.
 #include <memory>
 
 #include "partition/calibration.h"

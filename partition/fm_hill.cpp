@@ -1,8 +1,8 @@
-// fm-hill: moves single bodies in passes that also take steps that raise the cut (Fiduccia & Mattheyses 1982, between many
-// parts at a time as in Sanchis 1989).
+// fm-hill: moves single bodies in passes that also take steps that raise the cut (Fiduccia & Mattheyses 1982,
+// between many parts at a time as in Sanchis 1989).
 //
-// A pass is one climb (hill_climb.h, bound as in fm), in which every body may move once. Passes follow until one does not
-// lower the cut, so the result is never worse than the start.
+// A pass is one climb (hill_climb.h, bound as in fm), in which every body may move once. Passes follow until
+// one does not lower the cut, so the result is never worse than the start.
 #include <memory>
 
 #include "partition/hill_climb.h"

@@ -1,13 +1,14 @@
-// geometric: recursive coordinate bisection (Berger & Bokhari, A partitioning strategy for nonuniform problems on
-// multiprocessors, IEEE Transactions on Computers C-36, 1987), of the centres of the bodies.
+// geometric: recursive coordinate bisection (Berger & Bokhari, A partitioning strategy for nonuniform
+// problems on multiprocessors, IEEE Transactions on Computers C-36, 1987), of the centres of the bodies.
 //
-// A set of bodies that is to become k parts, at first all bodies and k = ceil(n / max-bodies), is ordered by the
-// coordinate in which its centres extend farthest (the first one on ties), then by index. The first
+// A set of bodies that is to become k parts, at first all bodies and k = ceil(n / max-bodies), is ordered by
+// the coordinate in which its centres extend farthest (the first one on ties), then by index. The first
 //
 //     floor(bodies * floor(k / 2) / k)
 //
-// bodies become floor(k / 2) parts in the same way, the others the rest of the k. So sizes differ by one at most,
-// and none is above max-bodies. Edges are not looked at: parts need not be contiguous. O(n log n) on the average.
+// bodies become floor(k / 2) parts in the same way, the others the rest of the k. So sizes differ by one at
+// most, and none is above max-bodies. Edges are not looked at: parts need not be contiguous. O(n log n) on
+// the average.
 #include <algorithm>
 #include <memory>
 #include <numeric>

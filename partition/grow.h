@@ -6,8 +6,8 @@
 // the outer condition of its Algorithm 1 as size(G0) < n_max, which would stop before anything is grown; it
 // is read as "G0 is not empty".
 //
-// Such a partitioner is a chooser: it names the seed and the next body. A body leaves G0 the moment it joins the
-// open part.
+// Such a partitioner is a chooser: it names the seed and the next body. A body leaves G0 the moment it joins
+// the open part.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,10 @@
-// One climb over hills of the cut: moves that may raise it on the way to a lower one (Fiduccia & Mattheyses 1982), as fm-hill
-// and merge-small make them.
+// One climb over hills of the cut: moves that may raise it on the way to a lower one (Fiduccia & Mattheyses
+// 1982), as fm-hill and merge-small make them.
 //
-// The allowed move of greatest gain (move_search.h) is made whatever its sign, and its body locked, until no move is left or
-// the last `patience` moves have not led to a cut lower than all before. The climb is then taken back to its first moment of
-// least cut, so it never ends worse than it began. Bodies stay locked until the search lets them go.
+// The allowed move of greatest gain (move_search.h) is made whatever its sign, and its body locked, until no
+// move is left or the last `patience` moves have not led to a cut lower than all before. The climb is then
+// taken back to its first moment of least cut, so it never ends worse than it began. Bodies stay locked until
+// the search lets them go.
 #pragma once
 
 #include <span>

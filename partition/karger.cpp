@@ -10,11 +10,13 @@
 //
 // bodies is refused. The nodes are the parts, also those beyond k: islands, and what was refused.
 //
-// karger-method recursive-bisection: every island is a set; a set of more than max-bodies bodies is split along a
-// minimum cut (karger_stein.h), and so are both sides, the one with the lowest body first. Such cuts know no balance.
+// karger-method recursive-bisection: every island is a set; a set of more than max-bodies bodies is split
+// along a minimum cut (karger_stein.h), and so are both sides, the one with the lowest body first. Such cuts
+// know no balance.
 //
-// Either is tried `trials` times with dice of seed partition-seed, which go on from one trial to the next. The trial
-// with the least cut, in edge-weight, counts; of several that with the fewest parts, then the earliest.
+// Either is tried `trials` times with dice of seed partition-seed, which go on from one trial to the next.
+// The trial with the least cut, in edge-weight, counts; of several that with the fewest parts, then the
+// earliest.
 #include <algorithm>
 #include <memory>
 #include <utility>

@@ -1,14 +1,15 @@
-// kl-hill: swaps bodies of two parts in passes that also take steps that raise the cut (Kernighan & Lin 1970).
+// kl-hill: swaps bodies of two parts in passes that also take steps that raise the cut (Kernighan & Lin
+// 1970).
 //
-// For every pair of adjacent parts A < B, in ascending order, a pass: all bodies of A and B are free; the swap of greatest
-// gain
+// For every pair of adjacent parts A < B, in ascending order, a pass: all bodies of A and B are free; the
+// swap of greatest gain
 //
 //     D_i(B) + D_j(A) - 2 w_ij,     D_i(B) = E_i - I_i between these two parts,
 //
-// among the free i of A and j of B is made whatever its sign, ties to the lowest min(i, j), then to the lowest max(i, j), and
-// both are locked, until one part has no free body. The pass is then taken back to its first moment of least cut, and
-// repeated while it lowers the cut. Rounds over all pairs follow until one brings nothing. Sizes of parts do not change, and
-// the result is never worse than the start.
+// among the free i of A and j of B is made whatever its sign, ties to the lowest min(i, j), then to the
+// lowest max(i, j), and both are locked, until one part has no free body. The pass is then taken back to its
+// first moment of least cut, and repeated while it lowers the cut. Rounds over all pairs follow until one
+// brings nothing. Sizes of parts do not change, and the result is never worse than the start.
 #include <algorithm>
 #include <memory>
 #include <set>

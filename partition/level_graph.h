@@ -1,8 +1,8 @@
-// A graph of a multilevel scheme (Hendrickson and Leland 1995; Karypis and Kumar 1998): a node stands for one body or for
-// several that were joined, an edge for all constraints between two nodes.
+// A graph of a multilevel scheme (Hendrickson and Leland 1995; Karypis and Kumar 1998): a node stands for one
+// body or for several that were joined, an edge for all constraints between two nodes.
 //
-// Compressed rows as in body_graph.h, but the neighbours of a node come in any order. Objects are made to be filled again:
-// their memory is kept.
+// Compressed rows as in body_graph.h, but the neighbours of a node come in any order. Objects are made to be
+// filled again: their memory is kept.
 #pragma once
 
 #include <array>
@@ -28,8 +28,8 @@ struct LevelGraph {
   // One node a body.
   void take(const BodyGraph& graph, EdgeWeight unit);
 
-  // The nodes of either side with the edges among them: node k of half s is nodes[s][k] here, ascending. side: (nodes) 0 or
-  // 1. place: scratch.
+  // The nodes of either side with the edges among them: node k of half s is nodes[s][k] here, ascending.
+  // side: (nodes) 0 or 1. place: scratch.
   void split(std::span<const char> side, std::array<LevelGraph, 2>& halves,
              std::array<std::vector<int>, 2>& nodes, std::vector<int>& place) const;
 
@@ -40,10 +40,11 @@ struct LevelGraph {
 // Joins nodes of a graph; keeps its memory.
 class Coarsening {
  public:
-  // Heavy-edge matching (Karypis and Kumar 1998, section 3.1): each node in turn, thinly connected ones first and among equals from node
-  // `begin` on, around to the one before it, is joined with
-  // the free neighbour of heaviest edge, ties to the one of fewer bodies, then to the lowest, if both have at most most_bodies
-  // together. Fills coarse_of_node (nodes), numbered by the lowest node of each pair; returns how many there are.
+  // Heavy-edge matching (Karypis and Kumar 1998, section 3.1): each node in turn, thinly connected ones first
+  // and among equals from node `begin` on, around to the one before it, is joined with
+  // the free neighbour of heaviest edge, ties to the one of fewer bodies, then to the lowest, if both have at
+  // most most_bodies together. Fills coarse_of_node (nodes), numbered by the lowest node of each pair;
+  // returns how many there are.
   int match(const LevelGraph& graph, int most_bodies, int begin, std::vector<int>& coarse_of_node);
 
   // The graph of nodes joined by pairs, as match() numbers them.

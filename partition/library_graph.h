@@ -1,5 +1,5 @@
-// What partitioners of other libraries share: the arrays in which these take a graph, and the graphs that they
-// are not asked about.
+// What partitioners of other libraries share: the arrays in which these take a graph, and the graphs that
+// they are not asked about.
 #pragma once
 
 #include <optional>
@@ -31,8 +31,8 @@ struct LibraryGraph {
 };
 
 // The split into `parts` parts where there is nothing to choose: into one, into one a body, and of a graph
-// without edges, which goes by index into parts of equal size (or one body less). Libraries are not asked then:
-// METIS is known to crash on such graphs.
+// without edges, which goes by index into parts of equal size (or one body less). Libraries are not asked
+// then: METIS is known to crash on such graphs.
 inline std::optional<Partition> split_without_choice(const BodyGraph& graph, int parts) {
   const int bodies = graph.body_count();
   if (parts > 1 && parts < bodies && graph.edge_count() > 0) return std::nullopt;

@@ -1,16 +1,17 @@
-// metis-recursive, metis-kway: the library METIS splits the graph into k = ceil(n / max-bodies) parts of about
-// as many bodies each, so that little edge weight is cut. metis-recursive halves the graph, and the halves
-// again; metis-kway coarsens the graph once, splits what is left so, and moves bodies among all parts while the
-// graph grows back (Karypis & Kumar 1998, SIAM Journal on Scientific Computing 20, 359-392; METIS 5.1 manual).
+// metis-recursive, metis-kway: the library METIS splits the graph into k = ceil(n / max-bodies) parts of
+// about as many bodies each, so that little edge weight is cut. metis-recursive halves the graph, and the
+// halves again; metis-kway coarsens the graph once, splits what is left so, and moves bodies among all parts
+// while the graph grows back (Karypis & Kumar 1998, SIAM Journal on Scientific Computing 20, 359-392; METIS
+// 5.1 manual).
 //
-// METIS aims at parts of at most (1 + ufactor / 1000) n / k bodies. ufactor 0 stands for the greatest at which
-// such a part keeps to floor((1 + max-growth) max-bodies) bodies. metis-recursive applies it at each of the
-// ceil(log2 k) halvings on the way to a part, so that there the root of that order is taken. METIS promises no
-// bound: partition/README.md counts how often a part is larger.
+// METIS aims at parts of at most (1 + ufactor / 1000) n / k bodies. ufactor 0 stands for the greatest at
+// which such a part keeps to floor((1 + max-growth) max-bodies) bodies. metis-recursive applies it at each of
+// the ceil(log2 k) halvings on the way to a part, so that there the root of that order is taken. METIS
+// promises no bound: partition/README.md counts how often a part is larger.
 //
 // What a call changes in the whole process is put back at its end: the state of rand(), and the handlers of
-// SIGABRT and SIGTERM. A SIGTERM waits meanwhile if other threads block it; taken by a thread that does not, it
-// ends the process in METIS's handler.
+// SIGABRT and SIGTERM. A SIGTERM waits meanwhile if other threads block it; taken by a thread that does not,
+// it ends the process in METIS's handler.
 #include <metis.h>
 #include <signal.h>
 

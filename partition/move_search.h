@@ -1,8 +1,9 @@
 // What all that move single bodies share: the allowed move of greatest gain, again and again.
 //
-// A move takes body i of part A into a part B adjacent to i; its gain is D_i(B) (gains.h). It is allowed when A keeps at least
-// one body and B has at most most_bodies after it, and when i is not locked. Ties go to the lowest body, then to the lowest
-// B. The heap holds every move that counts, except those parked because a part is full or would be emptied.
+// A move takes body i of part A into a part B adjacent to i; its gain is D_i(B) (gains.h). It is allowed when
+// A keeps at least one body and B has at most most_bodies after it, and when i is not locked. Ties go to the
+// lowest body, then to the lowest B. The heap holds every move that counts, except those parked because a
+// part is full or would be emptied.
 #pragma once
 
 #include <optional>
@@ -30,8 +31,8 @@ class MoveSearch {
   void release(int body) { is_locked_[body] = stays_[body]; }
   // Every body that does not stay is free again, and the partition may have been changed.
   void restart();
-  // The search goes on with the moves of this body alone and, after each that is made, those of the bodies next to it.
-  // What is locked stays so.
+  // The search goes on with the moves of this body alone and, after each that is made, those of the bodies
+  // next to it. What is locked stays so.
   void restart_at(int body);
   // Takes back what was made last of those not yet taken back; a restart must follow before the next find().
   void put_back(int body, int from);

@@ -1,14 +1,16 @@
 // multilevel: multilevel bisection by recursion (Karypis and Kumar 1998; Fiduccia and Mattheyses 1982).
 //
-// A set that is to become k parts is split into two that are to become ceil(k / 2) and floor(k / 2), with bodies in the same
-// proportion, until k is 1; at first k = ceil(n / max-bodies). A bisection (bisection.h) joins nodes by heavy-edge matching
-// until few are left, grows one side there, and refines on every level on the way back. At the end single bodies move
-// between all parts as in `fm`. Bounds: a part has at most B = floor((1 + max-growth) max-bodies + 1e-9) bodies; a set that is
-// still to be split L = ceil(log2 k) times lends its two sides one L-th of the room that its parts have up to B.
+// A set that is to become k parts is split into two that are to become ceil(k / 2) and floor(k / 2), with
+// bodies in the same proportion, until k is 1; at first k = ceil(n / max-bodies). A bisection (bisection.h)
+// joins nodes by heavy-edge matching until few are left, grows one side there, and refines on every level on
+// the way back. At the end single bodies move between all parts as in `fm`. Bounds: a part has at most B =
+// floor((1 + max-growth) max-bodies + 1e-9) bodies; a set that is still to be split L = ceil(log2 k) times
+// lends its two sides one L-th of the room that its parts have up to B.
 //
-// effort=fast joins bodies three times before the recursion, to at most six, and splits what is left. effort=best splits
-// bodies, tries more starts, lends up to half of what is left of the room beyond that L-th, as the dice fall, and moves
-// bodies as in `fm-hill` at the end. The dice also choose the nodes that matching and growing begin with.
+// effort=fast joins bodies three times before the recursion, to at most six, and splits what is left.
+// effort=best splits bodies, tries more starts, lends up to half of what is left of the room beyond that
+// L-th, as the dice fall, and moves bodies as in `fm-hill` at the end. The dice also choose the nodes that
+// matching and growing begin with.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -115,8 +117,8 @@ class Recursion {
   Partition partition_;
 };
 
-// Bodies of parts above the bound move where that costs least, or to the part of fewest bodies where none next to them has
-// room. Nodes of several bodies may have left some.
+// Bodies of parts above the bound move where that costs least, or to the part of fewest bodies where none
+// next to them has room. Nodes of several bodies may have left some.
 class Unloading {
  public:
   Unloading(const BodyGraph& graph, EdgeWeight unit, int most_bodies, Partition& partition)

@@ -1,5 +1,6 @@
 // Parameters that several partitioners and refiners share, or whose words stand for an enumeration, declared
-// once, and what they mean, with the thresholds of the paper. Any other parameter of one algorithm alone stands in its registry row.
+// once, and what they mean, with the thresholds of the paper. Any other parameter of one algorithm alone
+// stands in its registry row.
 #pragma once
 
 #include "harness/base/parameter.h"

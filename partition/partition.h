@@ -1,7 +1,7 @@
 // A partition of the bodies into parts (the subsystems of the parallel solver), and its metrics.
 //
-// Part ids are 0 .. part_count-1 in order of creation and stay so under refinement. No part is empty. Parts of a solver that
-// takes an interface at every level are the leaves of a tree (nested.h).
+// Part ids are 0 .. part_count-1 in order of creation and stay so under refinement. No part is empty. Parts
+// of a solver that takes an interface at every level are the leaves of a tree (nested.h).
 #pragma once
 
 #include <span>
@@ -20,7 +20,8 @@ struct Partition {
   std::vector<int> parent_of_part = {};  // (nodes of the tree): -1 for the root; empty: one level
 };
 
-// The kernel that a choice is for, "schur-rows" of "mix@max-bodies=50+fm/schur-rows"; empty of an empty choice.
+// The kernel that a choice is for, "schur-rows" of "mix@max-bodies=50+fm/schur-rows"; empty of an empty
+// choice.
 std::string_view kernel_of_choice(std::string_view choice);
 
 // Parts numbered by their lowest body. label_of_body: (n) equal within a part and nowhere else, in [0, n).

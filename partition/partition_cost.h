@@ -1,7 +1,8 @@
 // The modelled time of a partition (cost_model.h), kept up while single bodies move.
 //
-// For schur-rows only the two parts that a body leaves and joins are counted anew, and the interface follows from the number
-// of cut rows. A move under schur-bodies may change the vertex cover, and with it everything, so all is counted anew.
+// For schur-rows only the two parts that a body leaves and joins are counted anew, and the interface follows
+// from the number of cut rows. A move under schur-bodies may change the vertex cover, and with it everything,
+// so all is counted anew.
 #pragma once
 
 #include <vector>

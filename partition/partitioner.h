@@ -1,9 +1,9 @@
 // A partitioner splits the bodies of a step into parts.
 //
 // All five of the paper (Liu & Andrews 2022, section 3.1) grow parts with one loop (grow.h) and differ in the
-// body they choose next, of equal ones that of the lowest index. What numbers parts otherwise than by growing or by their lowest
-// body says so. To add one: a new file, its make_...() and a row in registry.cpp; the row declares its parameters and promises what its
-// parts are.
+// body they choose next, of equal ones that of the lowest index. What numbers parts otherwise than by growing
+// or by their lowest body says so. To add one: a new file, its make_...() and a row in registry.cpp; the row
+// declares its parameters and promises what its parts are.
 #pragma once
 
 #include <optional>
@@ -35,7 +35,8 @@ class Partitioner {
   virtual ~Partitioner() = default;
 
   // Runs, and asserts that every body is in exactly one part, that none is empty, and what was promised.
-  // Throws CannotSplit, and Stopped where it takes long and the program is asked to stop (harness/base/stop_signals.h).
+  // Throws CannotSplit, and Stopped where it takes long and the program is asked to stop
+  // (harness/base/stop_signals.h).
   Partition run(const BodyGraph& graph) const;
 
   // From its row, by make_partitioner (registry.h). max_bodies: its parameter of this name, if it has one;

@@ -42,8 +42,8 @@ std::span<const RefinerEntry> refiners();
 // Throws std::invalid_argument with one line for a name that is in no row.
 const PartitionerEntry& partitioner_row(const std::string& name);
 
-// "mix@tau-mix=0.3": the algorithm with these parameters and the defaults of all others. Throw std::invalid_argument with
-// one line that names the text and what is allowed.
+// "mix@tau-mix=0.3": the algorithm with these parameters and the defaults of all others. Throw
+// std::invalid_argument with one line that names the text and what is allowed.
 Algorithm read_partitioner(const std::string& text);
 Algorithm read_refiner(const std::string& text);
 

@@ -1,13 +1,15 @@
-// scotch: the library SCOTCH splits the graph into k = ceil(n / max-bodies) parts of about as many bodies each,
-// so that little edge weight is cut, by recursive bisection or k-way refinement on many levels as its strategy
-// says (Pellegrini & Roman 1996, HPCN Europe, 493-498; SCOTCH 7.0 user's guide, SCOTCH_stratGraphMapBuild).
+// scotch: the library SCOTCH splits the graph into k = ceil(n / max-bodies) parts of about as many bodies
+// each, so that little edge weight is cut, by recursive bisection or k-way refinement on many levels as its
+// strategy says (Pellegrini & Roman 1996, HPCN Europe, 493-498; SCOTCH 7.0 user's guide,
+// SCOTCH_stratGraphMapBuild).
 //
-// It is told that parts may differ from n / k by the share at which the largest keeps to floor((1 + max-growth)
-// max-bodies) bodies. It takes that as an aim: partition/README.md counts how often a part is larger.
+// It is told that parts may differ from n / k by the share at which the largest keeps to floor((1 +
+// max-growth) max-bodies) bodies. It takes that as an aim: partition/README.md counts how often a part is
+// larger.
 //
-// Every call has a context of its own, with one thread and its own dice: left alone, SCOTCH draws from dice of
-// the process and takes all processors, and its parts depend on how many there are. Where it fails it writes a
-// line to stderr and returns; the linked library of errors is the one that does not end the process.
+// Every call has a context of its own, with one thread and its own dice: left alone, SCOTCH draws from dice
+// of the process and takes all processors, and its parts depend on how many there are. Where it fails it
+// writes a line to stderr and returns; the linked library of errors is the one that does not end the process.
 #include <cstdint>
 #include <cstdio>
 // After these two, which it needs and does not include.

@@ -1,11 +1,12 @@
-// semantic: parts after the groups of bodies that a scene names, as those who model a mechanism split it by what it is
-// made of: chassis, boom and cable of a crane (Peiret, Andrews, Kovecses, Kry and Teichmann, Schur complement-based
-// substructuring of stiff multibody systems with contact, ACM Transactions on Graphics 38(5), 2019).
+// semantic: parts after the groups of bodies that a scene names, as those who model a mechanism split it by
+// what it is made of: chassis, boom and cable of a crane (Peiret, Andrews, Kovecses, Kry and Teichmann, Schur
+// complement-based substructuring of stiff multibody systems with contact, ACM Transactions on Graphics
+// 38(5), 2019).
 //
-// split whole: every group is a part, of whatever size. split chunks: a group of g bodies, in the order of their
-// indices, is cut into k = ceil(g / max-bodies) runs; run p = 0 .. k - 1 holds bodies floor(g p / k) to
-// floor(g (p + 1) / k) - 1 of it. Bodies in no group are one more group. Edges are not looked at: parts need not be
-// contiguous.
+// split whole: every group is a part, of whatever size. split chunks: a group of g bodies, in the order of
+// their indices, is cut into k = ceil(g / max-bodies) runs; run p = 0 .. k - 1 holds bodies floor(g p / k) to
+// floor(g (p + 1) / k) - 1 of it. Bodies in no group are one more group. Edges are not looked at: parts need
+// not be contiguous.
 #include <map>
 #include <memory>
 #include <vector>

@@ -1,4 +1,5 @@
-// single: one part with all bodies, as a control: what a solver of parts costs where there is nothing to share.
+// single: one part with all bodies, as a control: what a solver of parts costs where there is nothing to
+// share.
 #include <memory>
 
 #include "harness/base/parameter.h"

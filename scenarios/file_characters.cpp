@@ -23,8 +23,8 @@ std::size_t string_length(std::string_view rest, std::string_view quote) {
   return end;
 }
 
-// Of the comment or string that begins here; 0: none does. A quote within a word begins none: the parser takes it for a
-// part of the word.
+// Of the comment or string that begins here; 0: none does. A quote within a word begins none: the parser
+// takes it for a part of the word.
 std::size_t free_length(std::string_view text, std::size_t at) {
   const std::string_view rest = text.substr(at);
   if (rest.starts_with('#')) return std::min(rest.find('\n'), rest.size());

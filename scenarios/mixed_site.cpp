@@ -49,8 +49,8 @@ class MixedSite : public Scene {
   }
 
  private:
-  // Layers of side x side, (side - 1) x (side - 1), ... 2 x 2 rocks, each over the gaps of the one below and without
-  // a rock in the middle, where the cable runs; that of the lowest layer hangs on it.
+  // Layers of side x side, (side - 1) x (side - 1), ... 2 x 2 rocks, each over the gaps of the one below and
+  // without a rock in the middle, where the cable runs; that of the lowest layer hangs on it.
   void add_pile(SceneBuilder& builder, int side, const std::vector<double>& masses_kg, SceneRandom& random) {
     for (int cells = side, layer = 0; cells >= 2; --cells, ++layer)
       for (int cell = 0; cell < cells * cells; ++cell) {

@@ -43,7 +43,7 @@ class Scene {
 
 struct SceneEntry : AlgorithmEntry {
   std::unique_ptr<Scene> (*make)();
-  bool (*names_groups)(const Settings& settings) = nullptr;  // whether bodies are put into groups; null: none are
+  bool (*names_groups)(const Settings& settings) = nullptr;  // whether bodies are in groups; null: none are
 };
 
 std::span<const SceneEntry> scenes();

@@ -1,4 +1,5 @@
-// Boxes laid close on each other in a square pit, about as high as it is wide, and nearly at rest from the start.
+// Boxes laid close on each other in a square pit, about as high as it is wide, and nearly at rest from the
+// start.
 #pragma once
 
 #include <memory>

@@ -42,7 +42,8 @@ Strategy& Attempts::strategy(std::string_view name) {
   throw std::logic_error("no strategy of this name: " + std::string(name));
 }
 
-// auto picks the interior point where a set is no interval; a named strategy must take it from its first link on.
+// auto picks the interior point where a set is no interval; a named strategy must take it from its first link
+// on.
 SetKind Attempts::takes() { return strategy(strategy_ == "auto" ? "interior-point" : strategy_).takes(); }
 
 bool Attempts::run_chain(SolveState& state, std::span<const double> warm_impulse) {
@@ -66,8 +67,8 @@ bool Attempts::run_chain(SolveState& state, std::span<const double> warm_impulse
   return false;
 }
 
-// Until the residual of the problem as it was asked, compliance zero, is at the target or falls no more. Between proximal
-// steps the active set mostly stays: then a step is a correction by the factor at hand.
+// Until the residual of the problem as it was asked, compliance zero, is at the target or falls no more.
+// Between proximal steps the active set mostly stays: then a step is a correction by the factor at hand.
 bool Attempts::run_proximal(SolveState& state) {
   const double target = state.target_m_per_s();
   const double tolerance = state.violation_tolerance();

@@ -65,8 +65,8 @@ void BlockCholesky::set_zero(int branch_index) {
             panels_.begin() + end.panel_offset + 36L * end.width * end.row_count, 0.0);
 }
 
-// Adds the child's update matrix (lower triangle of blocks) into a range of the parent's panel and update matrix. Runs
-// of rows that are adjacent in the parent too are added in one go.
+// Adds the child's update matrix (lower triangle of blocks) into a range of the parent's panel and update
+// matrix. Runs of rows that are adjacent in the parent too are added in one go.
 void BlockCholesky::add_update(const Supernode& child, const Supernode& parent, const Range& range) {
   const int* target = symbolic_.row_in_parent().data() + child.first_row + child.width;
   const int count = child.rows_below(), ld = 6 * count;

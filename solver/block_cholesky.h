@@ -29,7 +29,8 @@ class BlockCholesky {
   bool analyze(int node_count, std::span<const std::pair<int, int>> edges,
                std::span<const int> stage_of_node = {}, int stage_count = 1,
                long most_blocks = BlockSymbolic::kAnyBlocks);
-  // What pattern and factor take; then the factor's memory, without which only place() and holds() may be used.
+  // What pattern and factor take; then the factor's memory, without which only place() and holds() may be
+  // used.
   void count(MemoryCount& memory) const;
   void allocate();
   const BlockSymbolic& symbolic() const { return symbolic_; }
@@ -42,15 +43,16 @@ class BlockCholesky {
 
   // Factors the supernodes of one branch, after its child branches. False when a pivot is not positive.
   bool factor(int branch);
-  // The same of a branch that is one supernode, in pieces (front_tiles.h): adds what its children left to strips of columns
-  // of its panel; makes tiles of its update matrix once the panel is factored.
+  // The same of a branch that is one supernode, in pieces (front_tiles.h): adds what its children left to
+  // strips of columns of its panel; makes tiles of its update matrix once the panel is factored.
   void gather(int supernode, int column_strip);
   void make_update(int supernode, int row_strip, int column_strip);
   FrontTiles front(int supernode);
 
   // Substitution (block_substitution.cpp).
-  // x <- L^-1 x and x <- L^-T x, x in position order, 6 doubles each. One branch after its child branches, or after
-  // its parent; each writes to its own places of x alone, and forward leaves what it adds above to its parent.
+  // x <- L^-1 x and x <- L^-T x, x in position order, 6 doubles each. One branch after its child branches, or
+  // after its parent; each writes to its own places of x alone, and forward leaves what it adds above to its
+  // parent.
   void forward(int branch, double* x);
   void backward(int branch, double* x);
   // The same of all branches.

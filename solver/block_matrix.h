@@ -5,8 +5,9 @@
 // of D come along its basis (row_weights.h), so that their Gram matrix is one of scalar rows.
 //
 // Branches (block_symbolic.h) let pieces of H be assembled and factored by different threads: assembly in any
-// order, factorisation of a branch after those below it. A group between bodies of two branches is assembled with the one that is eliminated first
-// and leaves its diagonal block of the other, to be added when that is factored.
+// order, factorisation of a branch after those below it. A group between bodies of two branches is assembled
+// with the one that is eliminated first and leaves its diagonal block of the other, to be added when that is
+// factored.
 #pragma once
 
 #include <span>
@@ -22,8 +23,8 @@ namespace cleave {
 class BlockMatrix {
  public:
   // bodies: the unknowns, by index in the problem; local_of_body[body] = place in `bodies`. groups: indices
-  // into step.groups() with every dynamic body in `bodies`. step must outlive the matrix. False where the factor has more
-  // than most_blocks (block_symbolic.h); its pattern is then unknown.
+  // into step.groups() with every dynamic body in `bodies`. step must outlive the matrix. False where the
+  // factor has more than most_blocks (block_symbolic.h); its pattern is then unknown.
   bool analyze(const PreparedStep& step, std::span<const int> bodies, std::span<const int> local_of_body,
                std::span<const int> groups, std::span<const int> stage_of_local = {}, int stage_count = 1,
                long most_blocks = BlockSymbolic::kAnyBlocks);
@@ -37,7 +38,8 @@ class BlockMatrix {
                      long most_blocks);
   bool rebind_whole(const PreparedStep& step);
 
-  // What matrix and factor take, once analysed; of one whose analysis ended early, what its blocks take, which is less.
+  // What matrix and factor take, once analysed; of one whose analysis ended early, what its blocks take,
+  // which is less.
   void count(MemoryCount& memory) const;
   // After analysis and rebind: assembly and factorisation want it.
   void allocate();
@@ -46,14 +48,15 @@ class BlockMatrix {
 
   // rows: of the whole problem, with their D.
   void assemble(const WeightedRows& rows, int branch);
-  // Of a whole step: d (m) of the rows of these groups into `kept`; sets changed[branch], of the branch that assembles it, where
-  // one is another than was kept before.
+  // Of a whole step: d (m) of the rows of these groups into `kept`; sets changed[branch], of the branch that
+  // assembles it, where one is another than was kept before.
   void take_weights(std::span<const double> d, const Chunk& groups, std::span<double> kept,
                     std::span<char> changed) const;
-  // After assembly of this branch and factorisation of the child branches. False when a pivot is not positive.
+  // After assembly of this branch and factorisation of the child branches. False when a pivot is not
+  // positive.
   bool factor(int branch);
-  // The same of a branch that is one supernode, in pieces; this one begins a strip of columns of its panel, the others are
-  // those of cholesky().
+  // The same of a branch that is one supernode, in pieces; this one begins a strip of columns of its panel,
+  // the others are those of cholesky().
   void gather(int branch, int column_strip);
   // Of all branches.
   void assemble(const WeightedRows& rows);

@@ -15,8 +15,8 @@ long trapezoid_blocks(long width, long rows) { return width * rows - width * (wi
 // of padding by width in blocks: narrow supernodes are dominated by overhead, wide ones by arithmetic.
 double allowed_padding(int width) { return width <= 2 ? 0.6 : width <= 4 ? 0.35 : width <= 8 ? 0.15 : 0.05; }
 
-// A branch has at most this share of all work, so that 16 workers have several each, but is not smaller than what takes
-// about ten microseconds.
+// A branch has at most this share of all work, so that 16 workers have several each, but is not smaller than
+// what takes about ten microseconds.
 constexpr double kMostBranchShare = 1.0 / 64;
 constexpr double kLeastBranchFlops = 1e5;
 
@@ -109,8 +109,8 @@ void BlockSymbolic::list_rows() {
   }
 }
 
-// A subtree is one branch where it is of one stage and has so little work that more workers than anybody has would
-// still get enough of them; what is above goes supernode by supernode.
+// A subtree is one branch where it is of one stage and has so little work that more workers than anybody has
+// would still get enough of them; what is above goes supernode by supernode.
 void BlockSymbolic::find_branches() {
   const int count = static_cast<int>(supernodes_.size());
   subtree_flops_.assign(count, 0.0);
@@ -187,7 +187,8 @@ void BlockSymbolic::list_carries() {
 
 // Update matrices live on two stacks per branch, by parity of the depth in the tree: when a supernode is
 // eliminated in postorder, its children's updates are on top of the other stack, so both stacks stay
-// last-in-first-out and the memory in use stays small and warm. The root's update stays for the parent branch.
+// last-in-first-out and the memory in use stays small and warm. The root's update stays for the parent
+// branch.
 void BlockSymbolic::place_storage() {
   const int count = static_cast<int>(supernodes_.size());
   std::vector<int>& depth = mark_;

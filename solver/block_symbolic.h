@@ -2,16 +2,18 @@
 // supernodes.
 //
 // Nodes are bodies, an off-diagonal block stands for a pair of bodies that share a row. Columns of the factor
-// (column_structure.h) with (nearly) the same rows are joined into supernodes, so that the numeric factorisation runs on
-// dense panels. Positions are places in the elimination order; all indices below are in blocks.
+// (column_structure.h) with (nearly) the same rows are joined into supernodes, so that the numeric
+// factorisation runs on dense panels. Positions are places in the elimination order; all indices below are in
+// blocks.
 //
-// Stages: nodes may carry a stage number; nodes of a lower stage are eliminated before those of a higher one, and
-// supernodes never span two. Where the stages are parts and the cut between them (a vertex cover), or the nodes of a
-// tree of parts, their numbers are the order from the leaves to the root, and the elimination tree is that tree.
+// Stages: nodes may carry a stage number; nodes of a lower stage are eliminated before those of a higher one,
+// and supernodes never span two. Where the stages are parts and the cut between them (a vertex cover), or the
+// nodes of a tree of parts, their numbers are the order from the leaves to the root, and the elimination tree
+// is that tree.
 //
-// Branches: the work is dealt out in branches of the elimination tree, each one task: a subtree of little work, or a
-// single supernode above those. A branch needs its child branches first and is independent of all others. Branches
-// depend on the pattern alone, so results do not depend on who works on them.
+// Branches: the work is dealt out in branches of the elimination tree, each one task: a subtree of little
+// work, or a single supernode above those. A branch needs its child branches first and is independent of all
+// others. Branches depend on the pattern alone, so results do not depend on who works on them.
 #pragma once
 
 #include <limits>
@@ -36,12 +38,13 @@ struct Supernode {
   long panel_offset = 0;     // in doubles, into the factor
   long update_offset = 0;    // in doubles, into the update stack
   int rows_below() const { return row_count - width; }
-  // About as many multiplications and additions as its elimination takes, padding included; too many where it is wide.
+  // About as many multiplications and additions as its elimination takes, padding included; too many where it
+  // is wide.
   double flops() const { return 216.0 * width * row_count * row_count; }
 };
 
-// Supernodes first .. last of one stage; `last` is the root of the subtree. What its columns add to positions above it
-// goes to rows below the root's own columns only.
+// Supernodes first .. last of one stage; `last` is the root of the subtree. What its columns add to positions
+// above it goes to rows below the root's own columns only.
 struct Branch {
   int first = 0, last = 0;
   int parent = -1;  // branch that the root's parent is in
@@ -57,8 +60,8 @@ struct Branch {
 class BlockSymbolic {
  public:
   // edges: pairs of distinct nodes, duplicates allowed. stage_of_node: (n) stages 0..stage_count-1, or empty
-  // for one stage. Buffers are kept for the next analysis. False where the factor has more than most_blocks blocks,
-  // padding aside: analysis ends there, and all that is known is block_count().
+  // for one stage. Buffers are kept for the next analysis. False where the factor has more than most_blocks
+  // blocks, padding aside: analysis ends there, and all that is known is block_count().
   bool analyze(int node_count, std::span<const std::pair<int, int>> edges,
                std::span<const int> stage_of_node = {}, int stage_count = 1, long most_blocks = kAnyBlocks);
   static constexpr long kAnyBlocks = std::numeric_limits<long>::max();
@@ -82,8 +85,8 @@ class BlockSymbolic {
     return std::span(branch_children_)
         .subspan(branch_child_first_[branch], branch_child_first_[branch + 1] - branch_child_first_[branch]);
   }
-  // For each entry of rows() at a position above its branch: its index among the rows below the branch's root; -1 for
-  // others.
+  // For each entry of rows() at a position above its branch: its index among the rows below the branch's
+  // root; -1 for others.
   std::span<const int> carry_index() const { return carry_index_; }
 
   // Blocks of the factor, padding aside, diagonal blocks whole; of as many columns as were analysed.

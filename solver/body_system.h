@@ -2,8 +2,8 @@
 //
 //     H = M + J'^T D J',   right-hand side f_v + J'^T D f_r,   dlambda = D (f_r - J' dv)
 //
-// with rows as the weights turn them (row_weights.h). Every function works on some of the step's groups or bodies, so that
-// they can be dealt out to threads; groups come before bodies.
+// with rows as the weights turn them (row_weights.h). Every function works on some of the step's groups or
+// bodies, so that they can be dealt out to threads; groups come before bodies.
 #pragma once
 
 #include <span>
@@ -17,7 +17,8 @@ namespace cleave {
 
 class BodySystem {
  public:
-  // position: where a body stands in the vectors that are solved for, x; empty: as in the problem. Both must stay.
+  // position: where a body stands in the vectors that are solved for, x; empty: as in the problem. Both must
+  // stay.
   void bind(const PreparedStep& step, std::span<const int> position = {});
   // As RowWeights, the arrays must stay where they are. turn() of all groups comes after it.
   void set(const RowWeights& weights) { rows_.set(step_->problem(), weights); }

@@ -8,9 +8,10 @@
 namespace cleave {
 namespace {
 
-// In entries of the factor. A task has at least what takes a core about 4 microseconds on its way up, but on few bodies two
-// threads still get three of them each; with more, the longest way counts more than what it costs to hand a task out: 16 workers would
-// take a seventh longer with tasks of 3000 entries than with branches (modelled, 600 rocks). A supernode takes something besides its entries.
+// In entries of the factor. A task has at least what takes a core about 4 microseconds on its way up, but on
+// few bodies two threads still get three of them each; with more, the longest way counts more than what it
+// costs to hand a task out: 16 workers would take a seventh longer with tasks of 3000 entries than with
+// branches (modelled, 600 rocks). A supernode takes something besides its entries.
 constexpr double kLeastWork = 8000, kTasksPerSquareOfThreads = 1.5, kSupernodeWork = 100;
 
 double work_of(const BlockSymbolic& symbolic, const Branch& branch) {
@@ -72,8 +73,8 @@ void BranchGroups::list_tasks(const BlockSymbolic& symbolic) {
   graph_.build(2 * count(), waits_, places_);
 }
 
-// As if no branch were joined, so that what is refused does not depend on the number of threads: a branch has a group and its
-// two tasks, which wait for one other each. Arrays that grow take up to twice their size.
+// As if no branch were joined, so that what is refused does not depend on the number of threads: a branch has
+// a group and its two tasks, which wait for one other each. Arrays that grow take up to twice their size.
 void BranchGroups::count(MemoryCount& memory) const {
   const std::uint64_t branches = work_.size();
   constexpr int kIntsOfGroup = 4, kIntsOfTask = 3, kNumbersOfTask = 2, kTasks = 2, kGrown = 2;

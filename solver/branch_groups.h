@@ -1,9 +1,10 @@
 // Branches of an elimination tree (block_symbolic.h) joined into tasks of a substitution.
 //
-// Branches are cut for the factorisation, whose work grows with the square of what a substitution takes: there, handing a
-// branch to a thread would take as long as its work. A branch with little of it, counted with what joined it from below, is
-// joined to its parent. So tasks are subtrees, or chains at the top, and what they add up to is as before, in the same order.
-// On one thread every branch is a task: their times are what is scheduled on workers that are not there.
+// Branches are cut for the factorisation, whose work grows with the square of what a substitution takes:
+// there, handing a branch to a thread would take as long as its work. A branch with little of it, counted
+// with what joined it from below, is joined to its parent. So tasks are subtrees, or chains at the top, and
+// what they add up to is as before, in the same order. On one thread every branch is a task: their times are
+// what is scheduled on workers that are not there.
 #pragma once
 
 #include <span>

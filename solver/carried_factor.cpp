@@ -8,8 +8,8 @@
 namespace cleave {
 namespace {
 
-// Iterations beside those that rows on other sides take: of a factor of this step, and of one before, since when the
-// bodies have moved.
+// Iterations beside those that rows on other sides take: of a factor of this step, and of one before, since
+// when the bodies have moved.
 constexpr int kIterationsInStep = 2, kIterationsAnyway = 6;
 // A system is solved so often, as its answer is refined.
 constexpr int kSolves = 3;
@@ -84,9 +84,9 @@ bool CarriedFactor::factor(const RowWeights& weights, ParallelTasks& tasks, cons
   run_work(before, *step_, tasks);
   blocks_.assign(weights.blocks.begin(), weights.blocks.end());
   system_.set({weights.d, blocks_});
+  if (!has_factor_ || pays_to_factor()) return factor_anew(tasks);
   if (!blocks_.empty())
     tasks.run_over(step_->group_chunks(), [&](const Chunk& groups) { system_.turn(groups); });
-  if (!has_factor_ || pays_to_factor()) return factor_anew(tasks);
   is_own_ = false;
   ++counts_.factor_reuses;
   return true;
@@ -104,8 +104,10 @@ void CarriedFactor::solve(std::span<const double> f_v, std::span<const double> f
   });
   tasks.run_over(step_->body_chunks(), [&](const Chunk& chunk) { system_.collect(chunk, f_v, residual_); });
   const int most = kIterationsAnyway + static_cast<int>(anew_mflop() / iteration_mflop());
-  if (!iterate(most, tasks) && factor_anew(tasks))
-    return kernel_->solve(f_v, f_r, dv, dlambda, tasks, {{}, around.after});
+  if (!has_factor_ || !iterate(most, tasks)) {
+    if (factor_anew(tasks)) return kernel_->solve(f_v, f_r, dv, dlambda, tasks, {{}, around.after});
+    x_.assign(residual_.size(), 0.0);  // no factor, no increment: strategies see that nothing falls
+  }
   tasks.run_over(groups, [&](const Chunk& chunk) {
     system_.expand(chunk, x_, f_r, dlambda);
     step_->do_rows(around.after, chunk);
@@ -132,8 +134,8 @@ double CarriedFactor::dot(std::span<const double> a, std::span<const double> b, 
   return std::accumulate(chunk_sums_.begin(), chunk_sums_.end(), 0.0);
 }
 
-// Solves H x = residual_. False when the factor is no positive definite one, or when that takes more than so many
-// iterations.
+// Solves H x = residual_. False when the factor is no positive definite one, or when that takes more than so
+// many iterations.
 bool CarriedFactor::iterate(int most, ParallelTasks& tasks) {
   x_.assign(residual_.size(), 0.0);
   image_.resize(residual_.size());

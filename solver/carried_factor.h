@@ -1,11 +1,13 @@
-// A kernel whose factor serves on: for later weights and later steps with the same bodies, H dv = f is solved by
-// conjugate gradients that the last factor preconditions (Hestenes and Stiefel 1952; Concus, Golub, O'Leary 1976),
+// A kernel whose factor serves on: for later weights and later steps with the same bodies, H dv = f is solved
+// by conjugate gradients that the last factor preconditions (Hestenes and Stiefel 1952; Concus, Golub,
+// O'Leary 1976),
 //
-//     iterations ~ eigenvalues of H_factored^-1 H that are not near 1 ~ rows that came, went, or changed sides,
+//     iterations ~ eigenvalues of H_factored^-1 H that are not near 1
+//                ~ rows that came, went, or changed sides,
 //
-// and the factorisation is made anew where that is cheaper. Which it is is decided by counted arithmetic, never by time,
-// so that a run takes the same way on every machine. What comes out is not exact to rounding but to kCarriedAccuracy;
-// strategies refine it, as they do the answers of a factor.
+// and the factorisation is made anew where that is cheaper. Which it is is decided by counted arithmetic,
+// never by time, so that a run takes the same way on every machine. What comes out is not exact to rounding
+// but to kCarriedAccuracy; strategies refine it, as they do the answers of a factor.
 //
 // Only the factor and its analysis are carried; rows are always those of the step at hand.
 #pragma once
@@ -21,8 +23,8 @@ namespace cleave {
 
 // Share of the right-hand side, in the norm of the factor, that conjugate gradients leave.
 inline constexpr double kCarriedAccuracy = 1e-8;
-// What a flop of a product, a substitution or an assembly costs in flops of a factorisation, whose numbers stay in the
-// cache: 3.3 to 4 Gflop/s against 10.7 on a pile of 800 boxes (one core, AVX-512).
+// What a flop of a product, a substitution or an assembly costs in flops of a factorisation, whose numbers
+// stay in the cache: 3.3 to 4 Gflop/s against 10.7 on a pile of 800 boxes (one core, AVX-512).
 inline constexpr double kFlopsOfAProduct = 3;
 
 class CarriedFactor : public Kernel {
@@ -34,7 +36,8 @@ class CarriedFactor : public Kernel {
     int factorizations = 0, factor_reuses = 0, cg_iterations = 0;
     double mflop_done = 0;  // of the factorisations
   };
-  // changed_rows: how many of the step before ended on another side than they had begun; as many are expected now.
+  // changed_rows: how many of the step before ended on another side than they had begun; as many are expected
+  // now.
   void begin_step(int changed_rows);
   const Counts& counts() const { return counts_; }
   // The next system is factored.

@@ -1,5 +1,5 @@
-// Chunks: what one task of a stage works on, about as many rows or bodies as take some microseconds. Chunks depend on the problem
-// alone, never on the number of threads.
+// Chunks: what one task of a stage works on, about as many rows or bodies as take some microseconds. Chunks
+// depend on the problem alone, never on the number of threads.
 #pragma once
 
 #include <vector>

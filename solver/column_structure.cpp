@@ -7,9 +7,9 @@
 namespace cleave {
 namespace {
 
-// A dissection takes about as long as a factorisation of this size, and is used again while the pattern stays. Measured:
-// piles and towers of up to 10 000 bodies have less fill by degree; a silo of 2000 has 0.75 times as many flops by
-// dissection.
+// A dissection takes about as long as a factorisation of this size, and is used again while the pattern
+// stays. Measured: piles and towers of up to 10 000 bodies have less fill by degree; a silo of 2000 has 0.75
+// times as many flops by dissection.
 constexpr double kLeastDissectedFlops = 2e8;
 
 }  // namespace
@@ -55,7 +55,8 @@ void ColumnStructure::build_adjacency(std::span<const std::pair<int, int>> edges
   adjacency_.reserve(1);  // the ordering wants an address even where there is no edge
 }
 
-// The ordering wants constraint sets below node_count, so the stages in use are numbered anew, in their order.
+// The ordering wants constraint sets below node_count, so the stages in use are numbered anew, in their
+// order.
 std::span<const int> ColumnStructure::number_stages(std::span<const int> stage_of_node) {
   stack_.assign(stage_of_node.begin(), stage_of_node.end());
   std::sort(stack_.begin(), stack_.end());
@@ -74,7 +75,8 @@ bool ColumnStructure::find_columns(long most_blocks) {
   return find_structures(most_blocks);
 }
 
-// The lesser of the present order, by degree, and nested dissection. fits: whether the present one has most_blocks at most.
+// The lesser of the present order, by degree, and nested dissection. fits: whether the present one has
+// most_blocks at most.
 bool ColumnStructure::choose_order(bool fits, long most_blocks) {
   const double flops = fits ? all_flops() : std::numeric_limits<double>::infinity();
   order_by_degree_ = node_at_position_;

@@ -1,9 +1,10 @@
-// The factor of a sparse symmetric matrix of blocks, column by column: elimination order, elimination tree, and which
-// rows a column has.
+// The factor of a sparse symmetric matrix of blocks, column by column: elimination order, elimination tree,
+// and which rows a column has.
 //
-// The order reduces fill: minimum degree, and where that leaves a factorisation so large that it is worth the time of
-// looking for a better order, nested dissection if it leaves less and there are no stages (elimination_order.h). It is then
-// made a postorder of the tree, so that every subtree is contiguous. Positions are places in that order.
+// The order reduces fill: minimum degree, and where that leaves a factorisation so large that it is worth the
+// time of looking for a better order, nested dissection if it leaves less and there are no stages
+// (elimination_order.h). It is then made a postorder of the tree, so that every subtree is contiguous.
+// Positions are places in that order.
 #pragma once
 
 #include <span>

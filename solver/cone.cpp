@@ -10,8 +10,8 @@ Eigen::Vector3d project_on_cone(const Eigen::Vector3d& y, double mu) {
   return {normal, mu * normal * y[1] / t, mu * normal * y[2] / t};
 }
 
-// As w + (y - P(y)) with y = d lambda - w, where y - P(y) is zero or lies on the surface of the polar cone, along
-// (-mu, t / |t|): no digits are lost to the difference of two large impulses.
+// As w + (y - P(y)) with y = d lambda - w, where y - P(y) is zero or lies on the surface of the polar cone,
+// along (-mu, t / |t|): no digits are lost to the difference of two large impulses.
 Eigen::Vector3d cone_residual(double mu, double d, const Eigen::Vector3d& lambda, const Eigen::Vector3d& w) {
   const Eigen::Vector3d y = d * lambda - w;
   const double t = tangential(y);

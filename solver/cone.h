@@ -1,8 +1,8 @@
-// The friction cone of one contact, K = { (n, t): |t| <= mu n }, with n the normal impulse and t the one or two tangential
-// ones. Vectors of a contact have three entries; the last is zero where there is one tangent.
+// The friction cone of one contact, K = { (n, t): |t| <= mu n }, with n the normal impulse and t the one or
+// two tangential ones. Vectors of a contact have three entries; the last is zero where there is one tangent.
 //
-// K is no product of intervals, so that "the nearest point of the set" and the residual are those of the whole contact, with
-// one d (m/s per N s) for its rows. (The judge has its own, residual_rows.cpp.)
+// K is no product of intervals, so that "the nearest point of the set" and the residual are those of the
+// whole contact, with one d (m/s per N s) for its rows. (The judge has its own, residual_rows.cpp.)
 #pragma once
 
 #include <Eigen/Core>
@@ -22,8 +22,8 @@ inline void store_contact(const FrictionCone& cone, const Eigen::Vector3d& value
   for (int k = 0; k < cone.row_count; ++k) x[cone.first_row + k] = value[k];
 }
 
-// |t|. (Not by std::hypot: impulses and velocities are far from where squares overflow, and it takes longer than all the
-// rest.)
+// |t|. (Not by std::hypot: impulses and velocities are far from where squares overflow, and it takes longer
+// than all the rest.)
 inline double tangential(const Eigen::Vector3d& x) { return std::sqrt(x[1] * x[1] + x[2] * x[2]); }
 
 // The nearest point of K: y itself inside, zero where mu |t| <= -n, else on the surface,

@@ -1,9 +1,10 @@
-// Four friction contacts side by side: vectors and matrices of a contact whose entries are a lane for each of the four, and the
-// algebra of the second-order cone Q = { x: |x_t| <= x_n } on them, in vector instructions. What the compiler would call rather than
-// inline is inlined by attribute: a call hands its vectors over in memory.
+// Four friction contacts side by side: vectors and matrices of a contact whose entries are a lane for each of
+// the four, and the algebra of the second-order cone Q = { x: |x_t| <= x_n } on them, in vector instructions.
+// What the compiler would call rather than inline is inlined by attribute: a call hands its vectors over in
+// memory.
 //
-// With x o y = (x . y, x_n y_t + y_n x_t), e = (1, 0, 0) is the one, and x_n +- |x_t| are the eigenvalues of x. Source:
-// Vandenberghe, "The CVXOPT linear and quadratic cone program solvers", 2010, section 4.
+// With x o y = (x . y, x_n y_t + y_n x_t), e = (1, 0, 0) is the one, and x_n +- |x_t| are the eigenvalues of
+// x. Source: Vandenberghe, "The CVXOPT linear and quadratic cone program solvers", 2010, section 4.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,8 +27,8 @@ struct LaneMatrix {
   LaneVector row[3];
 };
 
-// Contacts in the lanes: the first four of a list or all there are. The other lanes are a contact of mu = 1 whose numbers are
-// zero.
+// Contacts in the lanes: the first four of a list or all there are. The other lanes are a contact of mu = 1
+// whose numbers are zero.
 class ContactLanes {
  public:
   explicit ContactLanes(std::span<const FrictionCone> cones)
@@ -39,7 +40,8 @@ class ContactLanes {
     }
   }
 
-  // Of x (m). Vectors are put together in registers: read right after their entries were stored they would wait for memory.
+  // Of x (m). Vectors are put together in registers: read right after their entries were stored they would
+  // wait for memory.
   LaneVector load(std::span<const double> x) const {
     const std::array<const double*, kContactLanes> row = rows(x);
     const auto entries = [&](int k) { return Lanes(row[0][k], row[1][k], row[2][k], row[3][k]); };
@@ -126,8 +128,8 @@ inline LaneVector jordan_divide(const LaneVector& c, const LaneDivisor& by) {
   return {normal, (c.u - normal * by.l.u) * inverse, (c.v - normal * by.l.v) * inverse};
 }
 
-// The inverse of the step along y at which l + step y leaves Q; 0 or less where it never does. It is minus the least
-// eigenvalue of y in the coordinates where l is e.
+// The inverse of the step along y at which l + step y leaves Q; 0 or less where it never does. It is minus
+// the least eigenvalue of y in the coordinates where l is e.
 [[gnu::always_inline]] inline Lanes inverse_step(const LaneDivisor& by, const LaneVector& y) {
   const Lanes along = hyperbolic_product(by.unit, y);
   const Lanes share = (along + y.n) / (by.unit.n + 1);
@@ -166,8 +168,9 @@ struct LaneScaling {
   return {rows(eta, 1), rows(eta.inverse(), -1)};
 }
 
-// D = B diag(1 / d) B^T of D^-1 = X X^T + diag(compliance), by elimination with the largest row first, so that what a soft
-// direction weighs is not lost beside a stiff one. A contact with one tangent has zeros for the other.
+// D = B diag(1 / d) B^T of D^-1 = X X^T + diag(compliance), by elimination with the largest row first, so
+// that what a soft direction weighs is not lost beside a stiff one. A contact with one tangent has zeros for
+// the other.
 struct LaneWeights {
   LaneMatrix basis;    // row k: column k of B
   LaneVector inverse;  // d

@@ -5,8 +5,9 @@
 
 namespace cleave {
 
-// Items 0 .. item_count - 1 by bucket, ascending within each: those of bucket b at items[first[b]] .. items[first[b + 1] - 1].
-// bucket_of(item): 0 .. bucket_count - 1, or -1 for one that is left out. Buffers are kept.
+// Items 0 .. item_count - 1 by bucket, ascending within each: those of bucket b at items[first[b]] ..
+// items[first[b + 1] - 1]. bucket_of(item): 0 .. bucket_count - 1, or -1 for one that is left out. Buffers
+// are kept.
 template <class BucketOf>
 void sort_into_buckets(int item_count, int bucket_count, const BucketOf& bucket_of, std::vector<int>& first,
                        std::vector<int>& items) {

@@ -21,9 +21,9 @@ namespace {
 // What is left may be the rounding of the impulses where it is no more than so many of their last digits.
 constexpr double kMostRoundings = 4;
 
-// Where the last digit of the impulses found is a velocity above the limit, and what is left is about that, a text that says so.
-// Bodies wedged between others that cannot give way need such impulses; no impulses in double precision may then be within
-// the limit. impulse: along the axes of the set.
+// Where the last digit of the impulses found is a velocity above the limit, and what is left is about that, a
+// text that says so. Bodies wedged between others that cannot give way need such impulses; no impulses in
+// double precision may then be within the limit. impulse: along the axes of the set.
 std::string rounding_note(const PreparedStep& step, std::span<const double> impulse, double residual) {
   double largest = 0;
   for (int r = 0; r < step.row_count(); ++r) {
@@ -49,7 +49,7 @@ class DirectSolver : public StepSolver {
       : strategy_(strategy),
         kernel_name_(kernel.traits.runs_as != nullptr ? kernel.traits.runs_as : kernel.name),
         splits_(kernel.traits.splits),
-        clock_(options.threads, options.dispatch, !options.session),
+        clock_(options.threads, options.dispatch, options.models_workers && !options.session),
         kernel_(make_kernel(kernel, settings, options.session)),
         carried_(dynamic_cast<CarriedFactor*>(kernel_.get())),
         state_(read_direct_options(options, settings), clock_),
@@ -85,8 +85,8 @@ std::string DirectSolver::refuse_set(const StepProblem& problem) {
   return find_set_refusal("strategy", strategy_, problem, attempts_.takes());
 }
 
-// At once where it runs tasks of its own, else when a strategy has time for it. What the plan holds fits into the
-// function without memory of its own.
+// At once where it runs tasks of its own, else when a strategy has time for it. What the plan holds fits into
+// the function without memory of its own.
 void DirectSolver::plan_analysis(const Parts& parts) {
   planned_parts_ = parts;
   state_.analysis = [this] {

@@ -11,8 +11,8 @@
 namespace cleave {
 
 // strategy and kernel are names of registry.h; nullptr when the pair does not exist. settings: values of the
-// parameters that strategy and kernel declare. own, where given, runs in place of the registry's strategy of that
-// name.
+// parameters that strategy and kernel declare. own, where given, runs in place of the registry's strategy of
+// that name.
 std::unique_ptr<StepSolver> make_direct_solver(std::string_view strategy, std::string_view kernel,
                                                const SolveOptions& options, const Settings& settings,
                                                std::unique_ptr<Strategy> own = nullptr);

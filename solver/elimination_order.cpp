@@ -37,7 +37,8 @@ constexpr std::size_t kDissectionBytes = 100;  // more than it takes, per node a
 
 }  // namespace
 
-// Where METIS finds no memory it ends the process: so none without room. METIS_NodeND would put handlers of its own in the place of the program's, METIS_NodeNDP does not.
+// Where METIS finds no memory it ends the process: so none without room. METIS_NodeND would put handlers of
+// its own in the place of the program's, METIS_NodeNDP does not.
 bool order_by_dissection(const BlockGraph& graph, std::span<int> node_at_position) {
   const std::scoped_lock lock(metis_lock());
   int count = graph.node_count();

@@ -6,7 +6,8 @@
 namespace cleave {
 namespace {
 
-// What takes a core about 20 microseconds. With four times as many, 10 000 rocks have critical paths half as long again.
+// What takes a core about 20 microseconds. With four times as many, 10 000 rocks have critical paths half as
+// long again.
 constexpr double kLeastTiledFlops = 1e6;
 
 bool is_tiled(const BlockSymbolic& symbolic, const Branch& branch) {
@@ -55,8 +56,8 @@ void FactorTasks::list(const BlockSymbolic& symbolic, std::span<const int> branc
   graph_.build(task_count(), waits_, places_);
 }
 
-// The first operation on a tile of the panel is that of step 0, and waits for the tile's columns. The last ones are the
-// solves of the panel's last column, which wait for all others.
+// The first operation on a tile of the panel is that of step 0, and waits for the tile's columns. The last
+// ones are the solves of the panel's last column, which wait for all others.
 void FactorTasks::list_front(const BlockSymbolic& symbolic, int branch, int assembly) {
   const FrontStrips strips(symbolic.supernodes()[symbolic.branches()[branch].last]);
   const TileSchedule schedule(strips.count(), strips.own());

@@ -1,5 +1,6 @@
-// Which rows a friction cone has and what it is: the set of one contact, in the terms of the rows. What is done with it,
-// and its definition, is in cone.h: to be included only where it is done, as Eigen's vectors take the compiler long.
+// Which rows a friction cone has and what it is: the set of one contact, in the terms of the rows. What is
+// done with it, and its definition, is in cone.h: to be included only where it is done, as Eigen's vectors
+// take the compiler long.
 #pragma once
 
 namespace cleave {

@@ -8,8 +8,8 @@
 namespace cleave {
 namespace {
 
-// Blocks of a strip: so many strips that many workers share a front, but none so thin that its tasks are lost in what it
-// costs to hand them out, nor so thick that its tiles do not fit in a core's cache.
+// Blocks of a strip: so many strips that many workers share a front, but none so thin that its tasks are lost
+// in what it costs to hand them out, nor so thick that its tiles do not fit in a core's cache.
 constexpr int kStrips = 12, kLeastStrip = 8, kMostStrip = 16;
 
 int strips_of(int blocks, int strip) { return ceil_div(blocks, strip); }

@@ -1,9 +1,10 @@
 // A large front of the multifrontal factorisation in tiles, so that several threads can work on it.
 //
-// A front is the supernode's panel (its own columns, all its rows) and the update matrix that it leaves to its parent,
-// together the lower triangle of a square matrix of 6x6 blocks. Its rows are cut into strips of nearly equal size, no
-// strip partly among the own columns; tile (i, j) is where strip i of rows meets strip j of columns. The tiles of the
-// panel are factored as linear/tile_schedule.h says; those of the update matrix are then each made in one go.
+// A front is the supernode's panel (its own columns, all its rows) and the update matrix that it leaves to
+// its parent, together the lower triangle of a square matrix of 6x6 blocks. Its rows are cut into strips of
+// nearly equal size, no strip partly among the own columns; tile (i, j) is where strip i of rows meets strip
+// j of columns. The tiles of the panel are factored as linear/tile_schedule.h says; those of the update
+// matrix are then each made in one go.
 #pragma once
 
 #include "solver/block_symbolic.h"

@@ -9,7 +9,7 @@ void gauss_seidel_sweeps(const PreparedStep& step, int sweeps, std::span<double>
   assert(step.set().axes().empty());
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     check_stop(stop);
-    gauss_seidel_sweep(step, LaneSlack{}, WithinBounds{step}, impulse, v);
+    gauss_seidel_sweep(step, LaneSlack{}, WithinBounds(step), impulse, v);
   }
 }
 

@@ -1,5 +1,6 @@
-// Projected Gauss-Seidel: the predictor of the strategy `newton`, the baselines `pgs`, `pgs-colored`, `pgs-parts` and
-// the prediction of friction bounds. One sweep visits every row once, in natural order unless a baseline has another:
+// Projected Gauss-Seidel: the predictor of the strategy `newton`, the baselines `pgs`, `pgs-colored`,
+// `pgs-parts` and the prediction of friction bounds. One sweep visits every row once, in natural order unless
+// a baseline has another:
 //
 //     w_r = J_r v + C_r lambda_r - b_r,   lambda_r <- next(r, lambda_r, w_r),   v += M^-1 J_r^T dlambda
 //
@@ -28,35 +29,45 @@ struct LaneSlack {
   }
 };
 
-// w_r summed term after term: the order that what goes into a problem is defined by, as problems are told by their bytes.
+// w_r summed term after term: the order that what goes into a problem is defined by, as problems are told by
+// their bytes.
 struct OrderedSlack {
   double operator()(const StepProblem& problem, int row, const double* u, double impulse) const {
-    const double* j = problem.jacobian.data() + 12 * row;
+    const double* j = problem.jacobian.data() + 12L * row;
     double w = problem.compliance[row] * impulse - problem.rhs[row];
     for (int c = 0; c < 12; ++c) w += j[c] * u[c];
     return w;
   }
 };
 
-// Visits the rows of one group once, with any bounds: next(row, impulse, w) is the new impulse of the row; it may look at the
-// impulses of other rows as they are by then. Reads and writes the impulses of the group and the velocities of its bodies.
-template <typename Slack, typename Next>
-void gauss_seidel_visit(const PreparedStep& step, const RowGroup& g, const Slack& slack, const Next& next,
-                        std::span<double> impulse, std::span<double> v) {
+// Visits the rows of one group once, on the velocities u (12) of its two bodies, of which they are those
+// after it, with any bounds: next(row, impulse, w) is the new impulse of the row; it may look at the impulses
+// of other rows as they are by then. moved(c, change): by how much entry c moves where it is a whole body
+// that moves by `change`.
+template <typename Slack, typename Next, typename Moved>
+void gauss_seidel_rows(const PreparedStep& step, const RowGroup& g, const Slack& slack, const Next& next,
+                       const Moved& moved, std::span<double> impulse, double* u) {
   const StepProblem& problem = step.problem();
-  // The velocities of the two bodies stay in registers over the rows of the pair.
-  double u[12] = {};
-  std::copy_n(v.data() + 6 * g.body_a, 6, u);
-  if (g.body_b >= 0) std::copy_n(v.data() + 6 * g.body_b, 6, u + 6);
   for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
     const double old = impulse[r];
     impulse[r] = next(r, old, slack(problem, r, u, old));
     const double change = impulse[r] - old;
-    const double* mj = step.mass_jacobian().data() + 12 * r;
-    for (int c = 0; c < 12; ++c) u[c] += mj[c] * change;
+    const double* mj = step.mass_jacobian().data() + 12L * r;
+    for (int c = 0; c < 12; ++c) u[c] += moved(c, mj[c] * change);
   }
-  std::copy_n(u, 6, v.data() + 6 * g.body_a);
-  if (g.body_b >= 0) std::copy_n(u + 6, 6, v.data() + 6 * g.body_b);
+}
+
+// The same with the velocities of the bodies themselves, v (n, 6), which stay in registers over the rows.
+template <typename Slack, typename Next>
+void gauss_seidel_visit(const PreparedStep& step, const RowGroup& g, const Slack& slack, const Next& next,
+                        std::span<double> impulse, std::span<double> v) {
+  double u[12] = {};
+  std::copy_n(v.data() + 6L * g.body_a, 6, u);
+  if (g.body_b >= 0) std::copy_n(v.data() + 6L * g.body_b, 6, u + 6);
+  gauss_seidel_rows(
+      step, g, slack, next, [](int, double change) { return change; }, impulse, u);
+  std::copy_n(u, 6, v.data() + 6L * g.body_a);
+  if (g.body_b >= 0) std::copy_n(u + 6, 6, v.data() + 6L * g.body_b);
 }
 
 // One sweep over all groups.
@@ -66,11 +77,18 @@ void gauss_seidel_sweep(const PreparedStep& step, const Slack& slack, const Next
   for (const RowGroup& g : step.groups()) gauss_seidel_visit(step, g, slack, next, impulse, v);
 }
 
-// clamp(lambda_r - w_r / d_r, lo_r, hi_r), of a problem without turned boxes.
+// clamp(lambda_r - w_r / d_r, lo_r, hi_r), of a problem without turned boxes; inverse_diagonal: (m) 1 / d_r.
+// A row waits for the one before it, and would wait twice as long for a division.
 struct WithinBounds {
-  const PreparedStep& step;
+  const StepProblem& problem;
+  std::span<const double> inverse_diagonal;
+  explicit WithinBounds(const PreparedStep& step)
+      : problem(step.problem()), inverse_diagonal(step.inverse_diagonal()) {}
+  WithinBounds(const StepProblem& rows, std::span<const double> inverse)
+      : problem(rows), inverse_diagonal(inverse) {}
+
   double operator()(int r, double old, double w) const {
-    return std::clamp(old - w / step.diagonal()[r], step.problem().lower[r], step.problem().upper[r]);
+    return std::clamp(old - w * inverse_diagonal[r], problem.lower[r], problem.upper[r]);
   }
 };
 

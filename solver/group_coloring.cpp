@@ -7,8 +7,8 @@
 
 namespace cleave {
 
-// Colour after colour: of the groups that have none yet, those whose bodies do not have this one take it. That gives each
-// group the colour that it would take in its turn.
+// Colour after colour: of the groups that have none yet, those whose bodies do not have this one take it.
+// That gives each group the colour that it would take in its turn.
 void GroupColoring::color(int body_count, std::span<const RowGroup> groups) {
   first_.assign(1, 0);
   groups_.clear();

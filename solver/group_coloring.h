@@ -1,11 +1,12 @@
-// Colours for the groups of rows of a prepared step, so that groups of one colour share no dynamic body and may be worked
-// on at once. It is a colouring of the dual graph, whose nodes are constraints, adjacent where they share a dynamic body
-// (Fratarcangeli, Tibaldo, Pellacini: Vivace, ACM Transactions on Graphics 35(6), 2016); constraints between the same two
-// bodies, which are adjacent to each other and to the same others, are one node here.
+// Colours for the groups of rows of a prepared step, so that groups of one colour share no dynamic body and
+// may be worked on at once. It is a colouring of the dual graph, whose nodes are constraints, adjacent where
+// they share a dynamic body (Fratarcangeli, Tibaldo, Pellacini: Vivace, ACM Transactions on Graphics 35(6),
+// 2016); constraints between the same two bodies, which are adjacent to each other and to the same others,
+// are one node here.
 //
-// `greedy`: each group in turn takes the least colour that no group before it on one of its bodies has. A group refused c
-// colours has c neighbours, one of each, so there are at most as many colours as the largest degree plus one.
-// `vivace`: by chance (vivace_coloring.h).
+// `greedy`: each group in turn takes the least colour that no group before it on one of its bodies has. A
+// group refused c colours has c neighbours, one of each, so there are at most as many colours as the largest
+// degree plus one. `vivace`: by chance (vivace_coloring.h).
 #pragma once
 
 #include <cstdint>

@@ -30,8 +30,8 @@ inline void add_sides(std::span<const int> sides, const double* group_sums, cons
   std::copy_n(sum, 6, total);
 }
 
-// Velocities of the two bodies of a group (12), put together in registers: read as vectors right after they were copied
-// number by number, they would wait for memory. b is nullptr for static.
+// Velocities of the two bodies of a group (12), put together in registers: read as vectors right after they
+// were copied number by number, they would wait for memory. b is nullptr for static.
 struct BodyPair {
   FourLanes part[3];
 };
@@ -71,7 +71,8 @@ inline FourLanes four_rows_times(const double* row, const BodyPair& both) {
          __builtin_shufflevector(first, second, 2, 3, 6, 7);
 }
 
-// visit(r, row_r . both) for the rows of a group: for four of them at a time as FourLanes, for what is left as doubles.
+// visit(r, row_r . both) for the rows of a group: for four of them at a time as FourLanes, for what is left
+// as doubles.
 template <class Visit>
 void visit_products(const RowGroup& group, const double* rows, const BodyPair& both, const Visit& visit) {
   int r = group.first_row;

@@ -58,11 +58,12 @@ class ImpulseSet {
   void project(std::span<double> impulse) const;
 
   // max_r d_r |lambda_r - projection of (lambda_r - w_r / d_r)| of rows first .. last - 1; arrays (m) along
-  // the axes. A cone is projected on as a whole and is of the range that its normal row is in; Coulomb's law has in w what it
-  // adds (shifted_slack). NaN where one is no number.
+  // the axes. A cone is projected on as a whole and is of the range that its normal row is in; Coulomb's law
+  // has in w what it adds (shifted_slack). NaN where one is no number.
   double residual(int first, int last, std::span<const double> d, std::span<const double> impulse,
                   std::span<const double> w) const;
-  // The same, and the sum of F_r^2 / d_r of the rows and contacts, F_r being what residual() is the largest of.
+  // The same, and the sum of F_r^2 / d_r of the rows and contacts, F_r being what residual() is the largest
+  // of.
   struct Misses {
     double largest = 0;  // m/s
     double energy = 0;   // J
@@ -94,8 +95,8 @@ enum class SetKind { intervals, turned_boxes, cones };
 // The last kind of which a problem has a set.
 SetKind hardest_set(const StepProblem& problem);
 
-// Why an algorithm that takes sets of this kind refuses a problem; empty where it has no others. kind and name as in
-// "strategy" "pivot".
+// Why an algorithm that takes sets of this kind refuses a problem; empty where it has no others. kind and
+// name as in "strategy" "pivot".
 std::string find_set_refusal(std::string_view kind, std::string_view name, const StepProblem& problem,
                              SetKind taken = SetKind::intervals);
 

@@ -1,7 +1,8 @@
 // A kernel's analysis, kept from one solve to the next.
 //
-// It serves again where bodies and parts are the same and the rows join the same bodies, or pairs that the analysed pattern
-// has a place for. What the kernel looks at of the parts is held here until it is given others.
+// It serves again where bodies and parts are the same and the rows join the same bodies, or pairs that the
+// analysed pattern has a place for. What the kernel looks at of the parts is held here until it is given
+// others.
 #pragma once
 
 #include <vector>

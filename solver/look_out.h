@@ -8,8 +8,8 @@
 
 namespace cleave {
 
-// CLEAVE_LOOK_OUT_US in the environment: so many microseconds, whatever the machine does. Throws std::invalid_argument
-// where it is no number.
+// CLEAVE_LOOK_OUT_US in the environment: so many microseconds, whatever the machine does. Throws
+// std::invalid_argument where it is no number.
 const std::optional<std::chrono::steady_clock::duration>& asked_look_out();
 
 // Whether the machine took this thread off its core a moment ago, and so has other work for it.
@@ -29,10 +29,10 @@ bool look_out_for(std::chrono::steady_clock::duration time, Condition done) {
   return false;
 }
 
-// Whether `done` came true before it was time to sleep. Waking a thread takes some ten microseconds, so gaps shorter than
-// that are best spent awake; on an idle machine longer ones too, because every stage of a solve begins with a wake-up
-// otherwise. On a busy machine a long look-out is taken from the thread's own share of its core, which it then lacks
-// when there is work.
+// Whether `done` came true before it was time to sleep. Waking a thread takes some ten microseconds, so gaps
+// shorter than that are best spent awake; on an idle machine longer ones too, because every stage of a solve
+// begins with a wake-up otherwise. On a busy machine a long look-out is taken from the thread's own share of
+// its core, which it then lacks when there is work.
 template <class Condition>
 bool look_out(Condition done) {
   constexpr std::chrono::microseconds kLookOut{50}, kLongLookOut{2000};

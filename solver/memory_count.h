@@ -1,5 +1,5 @@
-// How much memory a factorisation will take, counted before it is allocated, and what is thrown where that is more than
-// a solve may have.
+// How much memory a factorisation will take, counted before it is allocated, and what is thrown where that is
+// more than a solve may have.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,6 @@ class MemoryCount {
   void add_grown(const std::vector<T>&... arrays) {
     (add_product(2, arrays.size(), sizeof(T)), ...);
   }
-  void add(const MemoryCount& other) { add_product(other.bytes_, 1, 1); }
 
   std::uint64_t bytes() const { return bytes_; }
 
@@ -55,10 +54,12 @@ class MemoryBudget {
  public:
   explicit MemoryBudget(std::uint64_t limit_bytes = kNoMemoryLimit) : limit_bytes_(limit_bytes) {}
 
-  // Before the memory is allocated. Throws MemoryRefused where it is more than the limit.
+  // Before the memory is allocated. Throws MemoryRefused where it is more than the limit, or than 64 bits
+  // count.
   void request(const MemoryCount& needed, bool counted_all = true) {
     needed_bytes_ = needed.bytes();
-    if (needed_bytes_ > limit_bytes_) throw MemoryRefused(needed_bytes_, counted_all, limit_bytes_);
+    if (needed_bytes_ > limit_bytes_ || needed_bytes_ == kNoMemoryLimit)
+      throw MemoryRefused(needed_bytes_, counted_all, limit_bytes_);
   }
   std::uint64_t limit_bytes() const { return limit_bytes_; }
   std::uint64_t needed_bytes() const { return needed_bytes_; }
@@ -67,8 +68,8 @@ class MemoryBudget {
   std::uint64_t limit_bytes_, needed_bytes_ = 0;
 };
 
-// Where an array whose values are of no interest is too short for `size`, gives it back before a longer one is made, so
-// that both are never there together; nor is it made longer than was asked for.
+// Where an array whose values are of no interest is too short for `size`, gives it back before a longer one
+// is made, so that both are never there together; nor is it made longer than was asked for.
 template <class T>
 void free_if_short(std::vector<T>& array, std::size_t size) {
   if (size > array.capacity()) array = std::vector<T>();

@@ -8,8 +8,8 @@
 
 namespace cleave {
 
-// Octets that a group may still join, the oldest first. Sixteen at most: of one body in very many groups, each needs an
-// octet of its own.
+// Octets that a group may still join, the oldest first. Sixteen at most: of one body in very many groups,
+// each needs an octet of its own.
 class OpenOctets {
  public:
   // The first with neither body; -1: none. body_b: -1 for what does not move.

@@ -1,5 +1,5 @@
-// Parameters that several strategies, kernels or baselines share, or whose words stand for an enumeration, declared once. Any
-// other parameter of one alone stands in its row of registry.cpp.
+// Parameters that several strategies, kernels or baselines share, or whose words stand for an enumeration,
+// declared once. Any other parameter of one alone stands in its row of registry.cpp.
 #pragma once
 
 #include "harness/base/parameter.h"

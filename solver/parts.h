@@ -1,12 +1,12 @@
 // How the bodies of a step are split into subsystems: one level of parts, or a tree of them.
 //
 //   part_of_body    (n) ids 0..parts-1 of the subsystems
-//   parent_of_part  empty: one level. Otherwise one entry a node of the tree: the leaves 0..parts-1, which are the
-//                   parts, then the inner nodes, each the union of its children. Every parent has a greater
-//                   number than its children; -1 for the root, which is the last node and the only root. A
-//                   single part is its own root.
-//   kernel          for which they were chosen, as the registry calls it; empty: for none. Solvers of a named kernel do
-//                   not look at it.
+//   parent_of_part  empty: one level. Otherwise one entry a node of the tree: the leaves 0..parts-1, which
+//                   are the parts, then the inner nodes, each the union of its children. Every parent has a
+//                   greater number than its children; -1 for the root, which is the last node and the only
+//                   root. A single part is its own root.
+//   kernel          for which they were chosen, as the registry calls it; empty: for none. Solvers of a named
+//                   kernel do not look at it.
 #pragma once
 
 #include <algorithm>

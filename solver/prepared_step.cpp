@@ -42,6 +42,7 @@ void PreparedStep::prepare(const StepProblem& problem, ParallelTasks* tasks) {
   inverse_mass_.resize(36 * static_cast<std::size_t>(n));
   mass_jacobian_.resize(12 * static_cast<std::size_t>(m));
   diagonal_.resize(m);
+  inverse_diagonal_.resize(m);
   run(body_chunks_, [this](const Chunk& chunk) { prepare_bodies(chunk); });
   run(group_chunks_, [this](const Chunk& chunk) { prepare_rows(chunk); });
   set_.bind(problem);
@@ -49,6 +50,7 @@ void PreparedStep::prepare(const StepProblem& problem, ParallelTasks* tasks) {
   level_diagonal();
   least_relative_compliance_ = std::numeric_limits<double>::infinity();
   for (int r = 0; r < m; ++r) {
+    inverse_diagonal_[r] = 1 / diagonal_[r];
     least_relative_compliance_ = std::min(least_relative_compliance_, problem.compliance[r] / diagonal_[r]);
   }
   velocity_scale_ = 1;

@@ -22,8 +22,9 @@ struct RowGroup {
   int row_count = 0;
 };
 
-// What is done with the rows first .. last - 1 of a chunk of groups, the index of which is the third number. Handed to what
-// passes over the rows anyway, it takes no stage of its own, and finds in the cache what that has read. Empty: nothing.
+// What is done with the rows first .. last - 1 of a chunk of groups, the index of which is the third number.
+// Handed to what passes over the rows anyway, it takes no stage of its own, and finds in the cache what that
+// has read. Empty: nothing.
 using RowWork = std::function<void(int first, int last, int chunk)>;
 // Before the rows are read, and after they are written.
 struct RowsAround {
@@ -32,8 +33,8 @@ struct RowsAround {
 
 class PreparedStep {
  public:
-  // problem must outlive this object. Buffers are kept from one problem to the next. tasks: who works on this and on the
-  // products below, until the next call; nullptr: the calling thread alone, with the same bytes.
+  // problem must outlive this object. Buffers are kept from one problem to the next. tasks: who works on this
+  // and on the products below, until the next call; nullptr: the calling thread alone, with the same bytes.
   void prepare(const StepProblem& problem, ParallelTasks* tasks = nullptr);
 
   const StepProblem& problem() const { return *problem_; }
@@ -64,6 +65,7 @@ class PreparedStep {
   const ImpulseSet& set() const { return set_; }
   // (m) d_r = (J M^-1 J^T + C)_rr along the axes of the set; on the rows of a cone the largest of theirs.
   std::span<const double> diagonal() const { return diagonal_; }
+  std::span<const double> inverse_diagonal() const { return inverse_diagonal_; }
   double velocity_scale() const { return velocity_scale_; }  // max(1, largest |v0|), m/s
   double least_relative_compliance() const {
     return least_relative_compliance_;
@@ -104,7 +106,7 @@ class PreparedStep {
   std::vector<int> side_first_, sides_;
   std::vector<Chunk> group_chunks_, body_chunks_;
   mutable std::vector<double> group_sums_;  // scratch: (groups, 12)
-  std::vector<double> inverse_mass_, mass_jacobian_, diagonal_;
+  std::vector<double> inverse_mass_, mass_jacobian_, diagonal_, inverse_diagonal_;
   long preparations_ = 0;
   double velocity_scale_ = 1, least_relative_compliance_ = 0;
 };

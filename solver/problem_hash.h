@@ -8,7 +8,8 @@
 
 namespace cleave {
 
-// h_s, then all arrays in the order in which StepProblem declares them, without lengths: what is empty changes nothing.
+// h_s, then all arrays in the order in which StepProblem declares them, without lengths: what is empty
+// changes nothing.
 std::uint64_t problem_hash(const StepProblem& problem);
 
 // The impulses (m), then the part ids (n; none for a solver that ignores parts).

@@ -1,6 +1,6 @@
-// The tables of solvers, strategies and kernels that `cleave list`, the command line and the tests iterate.
-// A new strategy, kernel or baseline is one new file, its make_...() declared in strategy.h, kernel.h or baselines.h, and one row here
-// (registry.cpp).
+// The tables of solvers, strategies and kernels that `cleave list`, the command line and the tests iterate. A
+// new strategy, kernel or baseline is one new file, its make_...() declared in strategy.h, kernel.h or
+// baselines.h, and one row here (registry.cpp).
 #pragma once
 
 #include <memory>
@@ -17,8 +17,8 @@ class Kernel;    // solver/kernels/kernel.h
 class Strategy;  // solver/strategies/strategy.h
 
 struct StrategyTraits {
-  // Ends within the judge's limit on every problem of boxes or cones that it takes; Coulomb's law may be beyond it. Others say
-  // not_converged, honestly.
+  // Ends within the judge's limit on every problem of boxes or cones that it takes; Coulomb's law may be
+  // beyond it. Others say not_converged, honestly.
   bool always_exact = false;
   const char* only_kernel = nullptr;  // the one kernel it runs on; nullptr: any
 };
@@ -38,7 +38,8 @@ struct KernelRow : AlgorithmEntry {
   KernelTraits traits = {};
 };
 
-// Short names: either an alias of strategy:kernel, or a baseline of its own, which may miss the judge's limit.
+// Short names: either an alias of strategy:kernel, or a baseline of its own, which may miss the judge's
+// limit.
 struct SolverAlias {
   const char* strategy = nullptr;
   const char* kernel = nullptr;
@@ -54,8 +55,9 @@ std::span<const StrategyRow> strategy_table();
 std::span<const KernelRow> kernel_table();
 std::span<const SolverRow> solver_table();
 
-// Rows of the program at hand, after those of this folder: other people's solvers, which nobody else is to link. Before
-// the tables are first asked for; a row whose library was not there has no `make` and says so (`unavailable`).
+// Rows of the program at hand, after those of this folder: other people's solvers, which nobody else is to
+// link. Before the tables are first asked for; a row whose library was not there has no `make` and says so
+// (`unavailable`).
 void add_solvers(std::span<const SolverRow> rows);
 
 // Whether strategy:kernel is a solver.

@@ -35,9 +35,9 @@ struct ResidualReport {
   double residual_relative =
       0;  // residual / largest entry of |v0|, |J v0| and |b|; 0 where it is zero itself
   double largest_free_velocity_m_per_s = 0;  // largest |entry| of v0
-  // (1/2 v^T M v - 1/2 v0^T M v0) - lambda^T b = lambda^T w - lambda^T C lambda - 1/2 |J^T lambda|^2 in M^-1: an exact
-  // step has <= 0 where lambda^T w <= 0. That is so where lo <= 0 <= hi, of a cone, where it is 0 for each contact, and
-  // under Coulomb's law, where it is -mu lambda_n |w_t|.
+  // (1/2 v^T M v - 1/2 v0^T M v0) - lambda^T b = lambda^T w - lambda^T C lambda - 1/2 |J^T lambda|^2 in M^-1:
+  // an exact step has <= 0 where lambda^T w <= 0. That is so where lo <= 0 <= hi, of a cone, where it is 0
+  // for each contact, and under Coulomb's law, where it is -mu lambda_n |w_t|.
   double energy_excess_j = 0;
   double kinetic_energy_j = 0;         // 1/2 v^T M v
   double limit_m_per_s = kExactLimit;  // kExactLimit * max(1, largest_free_velocity_m_per_s)
@@ -49,9 +49,9 @@ struct ResidualReport {
 ResidualReport judge(const StepProblem& problem, std::span<const double> impulse);
 
 // (m) The residual of every row, or axis of a turned box in the places of its rows; their maximum is that of
-// judge(). All NaN for NaN or infinite impulses. asked: (m) 1 where a row is asked for, the normal row of a contact without a
-// box for all of its rows; others have 0. Empty: all. velocity: (n, 6), or empty: becomes v on bodies with a row that is asked
-// for, and stays as it is on others.
+// judge(). All NaN for NaN or infinite impulses. asked: (m) 1 where a row is asked for, the normal row of a
+// contact without a box for all of its rows; others have 0. Empty: all. velocity: (n, 6), or empty: becomes v
+// on bodies with a row that is asked for, and stays as it is on others.
 std::vector<double> row_residuals(const StepProblem& problem, std::span<const double> impulse,
                                   std::span<const char> asked = {}, std::span<double> velocity = {});
 

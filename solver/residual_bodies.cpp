@@ -46,8 +46,8 @@ void mark_needed(const StepProblem& problem, std::span<const char> asked, BodySt
       if (body >= 0 && asked[r]) bodies.is_needed[body] = 1;
 }
 
-// sum += J^T lambda of `count` rows, of the body on one side of all of them. Six sums stay in registers: to store and load
-// numbers of extended precision takes several times as long as to add them.
+// sum += J^T lambda of `count` rows, of the body on one side of all of them. Six sums stay in registers: to
+// store and load numbers of extended precision takes several times as long as to add them.
 void add_impulses(const double* jacobian, const double* impulse, int count, Vector6& sum) {
   Real s0 = sum[0], s1 = sum[1], s2 = sum[2], s3 = sum[3], s4 = sum[4], s5 = sum[5];
   for (int r = 0; r < count; ++r, jacobian += 12) {

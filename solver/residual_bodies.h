@@ -1,5 +1,5 @@
-// What impulses make of bodies, for the judge (residual.h) alone: J^T lambda and v = v0 + M^-1 J^T lambda, in extended
-// precision.
+// What impulses make of bodies, for the judge (residual.h) alone: J^T lambda and v = v0 + M^-1 J^T lambda, in
+// extended precision.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +16,8 @@ using Real = long double;
 using Vector6 = Eigen::Matrix<Real, 6, 1>;
 using ConstVector6 = Eigen::Map<const Eigen::Matrix<double, 6, 1>>;
 
-// Cholesky's factor of a mass, M = L L^T, without what leading zeros of a row leave zero: of a body about its centre of mass,
-// all between moving and turning.
+// Cholesky's factor of a mass, M = L L^T, without what leading zeros of a row leave zero: of a body about its
+// centre of mass, all between moving and turning.
 class MassFactor {
  public:
   MassFactor() {}                    // of nothing yet; its numbers are not worth setting to 0
@@ -32,8 +32,8 @@ class MassFactor {
   bool is_positive_ = false;
 };
 
-// Of all bodies; those that are not needed have zeros for impulses, and no more. Side by side for each quantity: every row
-// looks at velocities, and few at the factors, which are far larger.
+// Of all bodies; those that are not needed have zeros for impulses, and no more. Side by side for each
+// quantity: every row looks at velocities, and few at the factors, which are far larger.
 struct BodyStates {
   explicit BodyStates(int bodies)
       : is_needed(bodies, 0), impulse(bodies, Vector6::Zero()), velocity(bodies), mass_factor(bodies) {}

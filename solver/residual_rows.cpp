@@ -49,8 +49,8 @@ AxisRow axis_of_row(const StepProblem& problem, std::span<const double> impulse,
   return axis;
 }
 
-// d = (J M^-1 J^T + C)_rr. A row that nothing can move (d = 0) is measured with d = 1, which keeps the residual zero
-// exactly at solutions.
+// d = (J M^-1 J^T + C)_rr. A row that nothing can move (d = 0) is measured with d = 1, which keeps the
+// residual zero exactly at solutions.
 template <class Row>
 Real find_diagonal(const StepProblem& problem, const BodyStates& bodies, int row, const Row& axis) {
   Real diagonal = problem.compliance[row];
@@ -75,9 +75,9 @@ Real find_slack(const StepProblem& problem, const BodyStates& bodies, int row, c
 }
 
 // d | lambda - clamp(lambda - w / d, lo, hi) | of one row, as | clamp(w, d (lambda - hi), d (lambda - lo)) |:
-// the same number without the division, whose cancellation would cost eps |lambda| d. d takes longer than all the rest,
-// and most rows do without: one at a bound whose w pushes it there has no residual, and as d >= C, a w between
-// C (lambda - hi) and C (lambda - lo) is not clamped.
+// the same number without the division, whose cancellation would cost eps |lambda| d. d takes longer than all
+// the rest, and most rows do without: one at a bound whose w pushes it there has no residual, and as d >= C,
+// a w between C (lambda - hi) and C (lambda - lo) is not clamped.
 template <class Row>
 double find_row_residual(const StepProblem& problem, const BodyStates& bodies, int row, const Row& axis) {
   const Real compliance = problem.compliance[row];
@@ -96,8 +96,8 @@ double find_row_residual(const StepProblem& problem, const BodyStates& bodies, i
 // The rows of a contact: normal, then its tangents, one or two of which the second then stays zero.
 using Vector3 = Eigen::Matrix<Real, 3, 1>;
 
-// The nearest point of the polar cone { (n, t): n + mu |t| <= 0 }, which is y - P(y) (Moreau). Outside both cones it
-// lies on the polar's surface, s (-mu, t / |t|).
+// The nearest point of the polar cone { (n, t): n + mu |t| <= 0 }, which is y - P(y) (Moreau). Outside both
+// cones it lies on the polar's surface, s (-mu, t / |t|).
 Vector3 project_on_polar(const Vector3& y, Real mu) {
   const Real tangential = std::hypot(y[1], y[2]);
   if (y[0] + mu * tangential <= 0) return y;
@@ -106,8 +106,8 @@ Vector3 project_on_polar(const Vector3& y, Real mu) {
   return {-mu * s, s * y[1] / tangential, s * y[2] / tangential};
 }
 
-// d (lambda - P(lambda - w / d)) of one contact, as w + y - P(y) with y = d lambda - w: no difference is left of what is
-// large and cancels. Writes one number a row.
+// d (lambda - P(lambda - w / d)) of one contact, as w + y - P(y) with y = d lambda - w: no difference is left
+// of what is large and cancels. Writes one number a row.
 void find_contact_residual(const StepProblem& problem, const BodyStates& bodies,
                            std::span<const double> impulse, int normal, std::span<double> residuals) {
   Vector3 lambda = Vector3::Zero(), w = Vector3::Zero();

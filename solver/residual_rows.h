@@ -1,4 +1,5 @@
-// The residual of each row, axis of a turned box, or contact with a cone, for the judge (residual.h has the equations) alone.
+// The residual of each row, axis of a turned box, or contact with a cone, for the judge (residual.h has the
+// equations) alone.
 #pragma once
 
 #include <span>
@@ -9,8 +10,8 @@
 
 namespace cleave::judging {
 
-// (m), 0 on rows that are not asked for. asked: (m) 1 where a row is, the normal row of a contact without a box for all of its
-// rows; empty: all.
+// (m), 0 on rows that are not asked for. asked: (m) 1 where a row is, the normal row of a contact without a
+// box for all of its rows; empty: all.
 std::vector<double> find_residuals(const StepProblem& problem, const BodyStates& bodies,
                                    std::span<const double> impulse, std::span<const char> asked = {});
 

@@ -10,7 +10,8 @@ namespace cleave {
 // Whether an array has entries in every problem, or none where no contact needs them.
 enum class RowArray { always, may_be_empty };
 
-// visit(name, member, width, RowArray): problem.*member has width numbers a row. In the order of problem_hash.
+// visit(name, member, width, RowArray): problem.*member has width numbers a row. In the order of
+// problem_hash.
 template <class Visit>
 void visit_row_arrays(const Visit& visit) {
   using enum RowArray;

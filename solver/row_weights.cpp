@@ -9,7 +9,8 @@
 namespace cleave {
 namespace {
 
-// Sizes are known to the compiler: a solve comes here several times an iteration. call(std::integral_constant of the block's rows).
+// Sizes are known to the compiler: a solve comes here several times an iteration. call(std::integral_constant
+// of the block's rows).
 template <class Call>
 void with_row_count(const WeightBlock& block, const Call& call) {
   switch (block.row_count) {

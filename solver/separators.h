@@ -11,11 +11,11 @@
 
 namespace cleave {
 
-// The node of the tree that each body is eliminated with. An edge is cut at the lowest node that has both of its parts
-// below it. From the root down, a vertex cover (vertex_cover.h) of the edges cut at a node that no cover above touches
-// belongs to that node; all other bodies belong to their part. Without the covers parts share no row, so that nodes
-// are subtrees of the elimination tree, and their numbers, children first, an order of elimination: George's nested
-// dissection (1973) with the tree that it is given.
+// The node of the tree that each body is eliminated with. An edge is cut at the lowest node that has both of
+// its parts below it. From the root down, a vertex cover (vertex_cover.h) of the edges cut at a node that no
+// cover above touches belongs to that node; all other bodies belong to their part. Without the covers parts
+// share no row, so that nodes are subtrees of the elimination tree, and their numbers, children first, an
+// order of elimination: George's nested dissection (1973) with the tree that it is given.
 class Separators {
  public:
   // Parts of one level have one node above them.

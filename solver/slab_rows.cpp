@@ -24,8 +24,8 @@ inline void transpose(__m256* v) {
   }
 }
 
-// u[c]: the c-th number of the velocity in every lane, 0 <= c < 6. Kept out of visit_octet(), where what is in registers
-// would go to memory for it.
+// u[c]: the c-th number of the velocity in every lane, 0 <= c < 6. Kept out of visit_octet(), where what is
+// in registers would go to memory for it.
 [[gnu::noinline]] void load(const SlabBody* bodies, const int* places, __m256* u) {
   __m256 v[8];
   for (int i = 0; i < 8; ++i) v[i] = _mm256_load_ps(bodies[places[i]].velocity);

@@ -1,5 +1,5 @@
-// Rows of Gauss-Seidel sweeps as slab_sweeps.h goes through them: eight groups of rows side by side in the lanes of a
-// vector, in single precision.
+// Rows of Gauss-Seidel sweeps as slab_sweeps.h goes through them: eight groups of rows side by side in the
+// lanes of a vector, in single precision.
 #pragma once
 
 namespace cleave {
@@ -32,8 +32,8 @@ struct alignas(64) SlabBody {
 // To where a sweep begins; share: beta (sweep_momentum.h).
 void push_body(float share, SlabBody& body);
 
-// Visits every row of these groups once, in their order, from where its impulse begins. Adds (lambda_k+1 - y_k) d_k+1 of its rows
-// to agreement, lane by lane.
+// Visits every row of these groups once, in their order, from where its impulse begins. Adds (lambda_k+1 -
+// y_k) d_k+1 of its rows to agreement, lane by lane.
 void visit_octet(const Octet& octet, float share, OctetRow* rows, SlabBody* bodies,
                  float (&agreement)[kOctetLanes]);
 

@@ -40,9 +40,14 @@ void SlabSweeps::bind(const PreparedStep& step, ParallelTasks& tasks) {
 }
 
 void SlabSweeps::sort_groups(const PreparedStep& step) {
-  const int sets = slabs_.set_count(), groups = static_cast<int>(step.groups().size());
-  const auto set_of = [&](int g) { return slabs_.set_of(step.groups()[g]); };
-  sort_into_buckets(groups, sets, set_of, group_first_, groups_);
+  const std::span<const RowGroup> all = step.groups();
+  const int sets = slabs_.set_count(), groups = static_cast<int>(all.size());
+  const int most = groups == 0 ? 0 : std::ranges::max(all, {}, &RowGroup::row_count).row_count;
+  sort_into_buckets(
+      groups, most + 1, [&](int g) { return most - all[g].row_count; }, length_first_, by_length_);
+  sort_into_buckets(
+      groups, sets, [&](int k) { return slabs_.set_of(all[by_length_[k]]); }, group_first_, groups_);
+  for (int& g : groups_) g = by_length_[g];
   octets_.resize(groups);
   place_of_group_.resize(groups);
   octet_count_.resize(sets);
@@ -51,13 +56,10 @@ void SlabSweeps::sort_groups(const PreparedStep& step) {
   changed_.resize(sets);
 }
 
-// The longest groups first, each to the first octet that has room for it and neither of its bodies. Bodies are those of the
-// step, and rows are counted from the first of the set, until places are assigned.
+// The longest groups come first, each to the first octet that has room for it and neither of its bodies.
+// Bodies are those of the step, and rows are counted from the first of the set, until places are assigned.
 void SlabSweeps::fill_octets(const PreparedStep& step, int set) {
   const std::span<const RowGroup> all = step.groups();
-  std::sort(groups_.begin() + group_first_[set], groups_.begin() + group_first_[set + 1], [&](int a, int b) {
-    return all[a].row_count != all[b].row_count ? all[a].row_count > all[b].row_count : a < b;
-  });
   OpenOctets open;
   int octets = 0, rows = 0;
   for (const int g : groups_of_set(set)) {
@@ -78,7 +80,8 @@ void SlabSweeps::fill_octets(const PreparedStep& step, int set) {
   row_first_[set + 1] = rows;
 }
 
-// What two threads write stays apart in memory: velocities by slab and rows by set, in the order in which they are visited.
+// What two threads write stays apart in memory: velocities by slab and rows by set, in the order in which
+// they are visited.
 void SlabSweeps::assign_places(const PreparedStep& step) {
   const int n = step.body_count();
   sort_into_buckets(
@@ -116,7 +119,7 @@ void SlabSweeps::pack_group(const PreparedStep& step, int g) {
   for (int k = 0; k < group.row_count; ++k) {
     const int r = group.first_row + k;
     OctetRow& row = rows_[place_of_group_[g] / kOctetLanes + k];
-    const double inverse = 1 / step.diagonal()[r];
+    const double inverse = step.inverse_diagonal()[r];
     for (int c = 0; c < numbers; ++c) {
       row.jacobian[c][lane] = static_cast<float>(p.jacobian[12L * r + c] * inverse);
       row.mass_jacobian[c][lane] = static_cast<float>(step.mass_jacobian()[12L * r + c]);

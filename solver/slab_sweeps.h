@@ -1,12 +1,15 @@
 // Projected Gauss-Seidel sweeps for several threads: the predictor of the strategy `pivot`. One row is
 //
-//     w_r = J_r v + C_r lambda_r - b_r,   lambda_r <- clamp(lambda_r - w_r / d_r, lo_r, hi_r),   v += M^-1 J_r^T dlambda
+//     w_r = J_r v + C_r lambda_r - b_r
+//     lambda_r <- clamp(lambda_r - w_r / d_r, lo_r, hi_r)
+//     v += M^-1 J_r^T dlambda_r
 //
-// as in gauss_seidel.h, where rows come in their natural order; from one sweep to the next with momentum (sweep_momentum.h). Bodies
-// are cut into slabs (slabs.h), and the rows of an inside or a gap are one task of a sweep. A task visits its groups of rows (those
-// between two bodies) in octets: up to eight groups of about as many rows, of which no two share a dynamic body, in the lanes of a
-// vector. Order and bytes depend on the problem alone, not on the number of threads. Numbers are of single precision, half the
-// memory that a sweep goes through: what comes out is a guess of the active set, and solved exactly afterwards.
+// as in gauss_seidel.h, where rows come in their natural order; from one sweep to the next with momentum
+// (sweep_momentum.h). Bodies are cut into slabs (slabs.h), and the rows of an inside or a gap are one task of
+// a sweep. A task visits its groups of rows (those between two bodies) in octets: up to eight groups of about
+// as many rows, of which no two share a dynamic body, in the lanes of a vector. Order and bytes depend on the
+// problem alone, not on the number of threads. Numbers are of single precision, half the memory that a sweep
+// goes through: what comes out is a guess of the active set, and solved exactly afterwards.
 #pragma once
 
 #include <array>
@@ -32,9 +35,10 @@ class SlabSweeps {
 
   // What run() goes on from: impulse (m) and v = v0 + M^-1 J^T impulse (n, 6).
   void take_in(std::span<const double> impulse, std::span<const double> v, ParallelTasks& tasks);
-  // Sweeps, at most kMostSweeps. After every kSweepsOfALook of them, and after the last, rows that have come to or left a bound since
-  // the look before, or take_in(), are counted; no more than settled_rows, and the run ends. Returns the last count. beside: one
-  // more task, for work that has nothing to do with the sweeps. Ends with Stopped where tasks say so.
+  // Sweeps, at most kMostSweeps. After every kSweepsOfALook of them, and after the last, rows that have come
+  // to or left a bound since the look before, or take_in(), are counted; no more than settled_rows, and the
+  // run ends. Returns the last count. beside: one more task, for work that has nothing to do with the sweeps.
+  // Ends with Stopped where tasks say so.
   int run(
       int sweeps, int settled_rows, ParallelTasks& tasks, const std::function<void()>& beside = [] {});
   // Impulses, those at a bound exactly there, and v to single precision.
@@ -63,14 +67,14 @@ class SlabSweeps {
   template <class ForBody, class ForGroup>
   void run_over_chunks(ParallelTasks& tasks, const ForBody& for_body, const ForGroup& for_group) const;
 
-  // Of every lane of an octet's row: at its lower bound, free, at its upper one. What looks alone read stands apart from
-  // what every sweep goes through.
+  // Of every lane of an octet's row: at its lower bound, free, at its upper one. What looks alone read stands
+  // apart from what every sweep goes through.
   using RowSides = std::array<signed char, kOctetLanes>;
 
   const PreparedStep* step_ = nullptr;
   Slabs slabs_;
   std::vector<int> group_first_;     // of each set, in groups_
-  std::vector<int> groups_;          // by set, then the longest first
+  std::vector<int> groups_;          // by set, then the longest first, then as in the step
   std::vector<Octet> octets_;        // those of a set from group_first_[set] on
   std::vector<int> octet_count_;     // by set
   std::vector<int> row_first_;       // of each set, in rows_, and the end
@@ -84,7 +88,7 @@ class SlabSweeps {
   std::vector<int> changed_;       // by set, at the last look
   int changed_rows_ = 0;           // of all
   bool is_settled_ = false;
-  std::vector<int> slab_first_, bodies_by_slab_;  // scratch
+  std::vector<int> slab_first_, bodies_by_slab_, length_first_, by_length_;  // scratch
 };
 
 }  // namespace cleave

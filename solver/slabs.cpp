@@ -16,7 +16,8 @@ void Slabs::cut(const PreparedStep& step, int sweeps) {
   build_graph(sweeps);
 }
 
-// Breadth first; appends to queue_ the bodies that are reached and have no distance yet. Returns the last of them.
+// Breadth first; appends to queue_ the bodies that are reached and have no distance yet. Returns the last of
+// them.
 int Slabs::walk_from(const PreparedStep& step, int start, int distance) {
   std::size_t next = queue_.size();
   distance_[start] = distance;
@@ -33,7 +34,8 @@ int Slabs::walk_from(const PreparedStep& step, int start, int distance) {
   return queue_.back();
 }
 
-// From a body at the edge: the one that is reached last from the body of lowest number. Islands follow each other.
+// From a body at the edge: the one that is reached last from the body of lowest number. Islands follow each
+// other.
 void Slabs::measure_distances(const PreparedStep& step) {
   distance_.assign(step.body_count(), -1);
   queue_.clear();
@@ -86,8 +88,8 @@ void Slabs::wait_for_neighbours(int begin, int gap) {
   }
 }
 
-// The end of a sweep waits for all sets, and the insides of the next one for it. The same graph serves all steps that are cut
-// into as many slabs.
+// The end of a sweep waits for all sets, and the insides of the next one for it. The same graph serves all
+// steps that are cut into as many slabs.
 void Slabs::build_graph(int sweeps) {
   if (count_ == graph_count_ && sweeps == graph_sweeps_) return;
   const int gaps = count_ - 1;

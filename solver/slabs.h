@@ -1,10 +1,10 @@
-// Slabs of bodies, by their distance in the graph from a body at its edge: rows between two bodies are inside of a slab or
-// between two that are neighbours. What a sweep over them visits, and in which order:
+// Slabs of bodies, by their distance in the graph from a body at its edge: rows between two bodies are inside
+// of a slab or between two that are neighbours. What a sweep over them visits, and in which order:
 //
 //     the insides of all slabs;   the gaps between slabs 0|1, 2|3, ...;   the gaps 1|2, 3|4, ...
 //
-// Each inside or gap, a set of groups of rows, waits within a sweep for those that share bodies with it alone. A sweep begins where
-// that before it has ended.
+// Each inside or gap, a set of groups of rows, waits within a sweep for those that share bodies with it
+// alone. A sweep begins where that before it has ended.
 #pragma once
 
 #include <span>
@@ -18,8 +18,8 @@ namespace cleave {
 
 class Slabs {
  public:
-  // Cuts the bodies, and makes the graph of so many sweeps: tasks sweep * tasks_of_sweep() + set, the last of a sweep being its
-  // end; and one more that waits for none.
+  // Cuts the bodies, and makes the graph of so many sweeps: tasks sweep * tasks_of_sweep() + set, the last of
+  // a sweep being its end; and one more that waits for none.
   void cut(const PreparedStep& step, int sweeps);
 
   int count() const { return count_; }

@@ -6,9 +6,9 @@
 // factor() hands the kernel, whose right-hand sides and increments are along them too. Without turned boxes
 // axes and rows are the same.
 //
-// The rows of a cone (cone.h) have a block of the strategy's own; weights are along its basis, right-hand sides and
-// increments in rows, which solve() turns. Where the law is Coulomb's, the strategy sees a cone whose normal slack is
-// raised by `shift`, mu |w_t| of an earlier iterate.
+// The rows of a cone (cone.h) have a block of the strategy's own; weights are along its basis, right-hand
+// sides and increments in rows, which solve() turns. Where the law is Coulomb's, the strategy sees a cone
+// whose normal slack is raised by `shift`, mu |w_t| of an earlier iterate.
 #pragma once
 
 #include <algorithm>
@@ -52,8 +52,8 @@ struct SolveState {
   void begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,
              std::span<const double> warm_impulse);
 
-  // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b (plus the shift) from the impulses. around: may write the impulses of
-  // a chunk, and reads its w.
+  // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b (plus the shift) from the impulses. around: may write
+  // the impulses of a chunk, and reads its w.
   void update_velocity(const RowsAround& around = {});
 
   // The same with the shift of these velocities.
@@ -61,11 +61,12 @@ struct SolveState {
   // These impulses (m), with their velocities and shift.
   void load(const std::vector<double>& impulses);
 
-  // The kernel's factorisation for the weights, which `before` may write; counted. False when it finds a non-positive pivot.
+  // The kernel's factorisation for the weights, which `before` may write; counted. False when it finds a
+  // non-positive pivot.
   bool factor(const RowWork& before = {});
 
-  // The kernel's analysis, where it is still to be done: a strategy that has other work first may do it beside that, as
-  // one of its tasks. factor() does it otherwise.
+  // The kernel's analysis, where it is still to be done: a strategy that has other work first may do it
+  // beside that, as one of its tasks. factor() does it otherwise.
   void analyze();
 
   // dv and dlambda from f_v and f_r by the kernel; f_r of cones is left along their bases.
@@ -93,13 +94,13 @@ struct SolveState {
   // Most corrections of an answer of which only the violations are counted, and of one that stays.
   static constexpr int kSearchRefinements = 3, kLastRefinements = 2;
 
-  // correct_free until w on the free rows is below `target` or no longer falls; returns the largest |w| left. What only finds
-  // out whether an active set is right does not count as refinements of the answer.
+  // correct_free until w on the free rows is below `target` or no longer falls; returns the largest |w| left.
+  // What only finds out whether an active set is right does not count as refinements of the answer.
   enum class Refining { answer, search };
   double refine_free(double target, int most_steps, Refining what);
 
-  // Rows whose impulse left its bounds, or would after a step along its own slack, or whose slack has the wrong sign, beyond
-  // `tolerance` (m/s); fills `violated` and moves nothing.
+  // Rows whose impulse left its bounds, or would after a step along its own slack, or whose slack has the
+  // wrong sign, beyond `tolerance` (m/s); fills `violated` and moves nothing.
   enum class Violated { now, after_a_step };
   int find_violations(double tolerance, Violated when = Violated::now);
 
@@ -110,9 +111,10 @@ struct SolveState {
   // Moves one violated row to the state its violation asks for.
   void flip(int row);
 
-  // Light work on rows as a pass of its own, a task for every chunk: task(first, last, chunk). Few rows are one task: to hand
-  // out a part of them would take longer than to do it. On five steps of 200 rocks two threads took from 14 % less to 7 % more
-  // time with chunks of 384 rows than with one of all rows, 4 % less in the median.
+  // Light work on rows as a pass of its own, a task for every chunk: task(first, last, chunk). Few rows are
+  // one task: to hand out a part of them would take longer than to do it. On five steps of 200 rocks two
+  // threads took from 14 % less to 7 % more time with chunks of 384 rows than with one of all rows, 4 % less
+  // in the median.
   static constexpr int kFewRows = 1024;
   std::size_t chunk_count() const { return step->group_chunks().size(); }
   template <class Task>
@@ -154,8 +156,8 @@ struct SolveState {
   std::vector<WeightBlock> blocks;  // of the present factor: the axes of the set, then one a cone
   std::vector<double> shift;        // (cones) m/s, zero but for Coulomb's law; empty where no cone is
   std::vector<double> f_v, f_r, dv, dlambda;  // right-hand sides and increments
-  // In a session: how many rows ended in another state than the warm start told, in the last solve and in this one. The greatest
-  // number where the strategy does not say.
+  // In a session: how many rows ended in another state than the warm start told, in the last solve and in
+  // this one. The greatest number where the strategy does not say.
   int last_changed_rows = std::numeric_limits<int>::max(), changed_rows = std::numeric_limits<int>::max();
   std::vector<int> violated;        // rows found by find_violations
   std::vector<double> row_impulse;  // (m) scratch: impulses in rows where a box is turned

@@ -53,7 +53,7 @@ int SplitSweep::copy_of(int body, int domain) {
 
 // What the copies add to the diagonal of whole bodies, so that it is that one's bytes where nothing is split.
 void SplitSweep::split_diagonal() {
-  diagonal_.assign(step_->diagonal().begin(), step_->diagonal().end());
+  inverse_diagonal_.assign(step_->diagonal().begin(), step_->diagonal().end());
   for (const RowGroup& g : step_->groups()) {
     for (int side = 0; side < 2; ++side) {
       const int body = side == 0 ? g.body_a : g.body_b;
@@ -63,10 +63,11 @@ void SplitSweep::split_diagonal() {
         double whole = 0;
         for (long c = first; c < first + 6; ++c)
           whole += step_->problem().jacobian[c] * step_->mass_jacobian()[c];
-        diagonal_[r] += (copies_of(body) - 1) * whole;
+        inverse_diagonal_[r] += (copies_of(body) - 1) * whole;
       }
     }
   }
+  for (double& d : inverse_diagonal_) d = 1 / d;
 }
 
 // Small domains are put together, so that a task pays.
@@ -97,21 +98,15 @@ void SplitSweep::sweep_domain(int domain, std::span<double> impulse, std::span<c
 
 void SplitSweep::sweep_group(int group, std::span<double> impulse) {
   const RowGroup& g = step_->groups()[group];
-  const StepProblem& problem = step_->problem();
   double* of_a = u_.data() + 6L * copy_a_[group];
   double* of_b = g.body_b < 0 ? nullptr : u_.data() + 6L * copy_b_[group];
   const double copies[2] = {double(copies_of(g.body_a)), g.body_b < 0 ? 1.0 : double(copies_of(g.body_b))};
   double both[12] = {};
   std::copy_n(of_a, 6, both);
   if (of_b != nullptr) std::copy_n(of_b, 6, both + 6);
-  for (int r = g.first_row; r < g.first_row + g.row_count; ++r) {
-    const double old = impulse[r];
-    const double w = LaneSlack{}(problem, r, both, old);
-    impulse[r] = std::clamp(old - w / diagonal_[r], problem.lower[r], problem.upper[r]);
-    const double change = impulse[r] - old;
-    const double* mj = step_->mass_jacobian().data() + 12L * r;
-    for (int c = 0; c < 12; ++c) both[c] += copies[c / 6] * (mj[c] * change);
-  }
+  gauss_seidel_rows(
+      *step_, g, LaneSlack{}, WithinBounds(step_->problem(), inverse_diagonal_),
+      [&](int c, double change) { return copies[c / 6] * change; }, impulse, both);
   std::copy_n(both, 6, of_a);
   if (of_b != nullptr) std::copy_n(both + 6, 6, of_b);
 }

@@ -63,8 +63,8 @@ void StageClock::model_stage(const TaskGraph* graph, std::span<double> task_ms) 
   }
   const double gain_ms = on_one_ms - 1e-3 * dispatch_.stage_us;
   const double longest_ms = graph == nullptr ? task_ms.front() : schedule_.critical_path_ms();
-  // Where so many workers take no more than the longest way, neither do more of them: a schedule takes longer to find than
-  // many a stage to run.
+  // Where so many workers take no more than the longest way, neither do more of them: a schedule takes longer
+  // to find than many a stage to run.
   bool is_longest = false;
   for (std::size_t k = 0; k < kModelWorkers.size(); ++k) {
     const int workers = kModelWorkers[k];

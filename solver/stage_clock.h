@@ -1,12 +1,13 @@
 // The clock of a solve: times of its named stages, and what the same tasks would take on p workers.
 //
-// A parallel stage is a set of tasks (one per subsystem, branch or tile), independent or of a graph. Their schedule
-// on p workers (task_schedule.h) gives the makespan of the stage; a solve on p workers is then modelled as the sum
-// of the makespans of its parallel stages plus all serial time. On more than one worker every task is charged what an
-// empty one costs, less what of that its one-thread time contains, and every stage what it costs to begin and end one; a
-// single task that belongs to no graph is done by the caller and pays neither. Communication is left out. Task times add
-// up to wall time on one thread only, so a solve on more threads has no model. The model is made after the clock has
-// stopped: during the solve task times are only put down.
+// A parallel stage is a set of tasks (one per subsystem, branch or tile), independent or of a graph. Their
+// schedule on p workers (task_schedule.h) gives the makespan of the stage; a solve on p workers is then
+// modelled as the sum of the makespans of its parallel stages plus all serial time. On more than one worker
+// every task is charged what an empty one costs, less what of that its one-thread time contains, and every
+// stage what it costs to begin and end one; a single task that belongs to no graph is done by the caller and
+// pays neither. Communication is left out. Task times add up to wall time on one thread only, so a solve on
+// more threads has no model. The model is made after the clock has stopped: during the solve task times are
+// only put down.
 #pragma once
 
 #include <chrono>
@@ -24,16 +25,18 @@ class StageClock {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // threads: of the solves that are timed. dispatch: what the model charges. graphs_stay: none is built anew during a
-  // solve; else there is no model.
-  explicit StageClock(int threads = 1, const DispatchCost& dispatch = {}, bool graphs_stay = true)
-      : models_(threads == 1 && graphs_stay), dispatch_(dispatch) {}
+  // threads: of the solves that are timed. dispatch: what the model charges. models: whether solves on one
+  // thread are modelled; no graph may be built anew during one then.
+  explicit StageClock(int threads = 1, const DispatchCost& dispatch = {}, bool models = true)
+      : models_(threads == 1 && models), dispatch_(dispatch) {}
 
   void start();                                // begins a solve: all zero
   void add(Stage stage, double milliseconds);  // serial or parallel wall time of a stage
   // What one stage did in the midst of another.
   void move(Stage from, Stage to, double milliseconds);
-  // Tasks of one parallel stage that has just run (wall times in ms): independent ones, or those of a graph.
+  bool models() const { return models_; }
+  // Where it models: tasks of one parallel stage that has just run (wall times in ms), independent ones, or
+  // those of a graph. Else nothing.
   void add_tasks(std::span<const double> task_ms);
   void add_graph(const TaskGraph& graph, std::span<const double> task_ms);
   StageTimes stop();  // ends the solve, then models it
@@ -61,8 +64,8 @@ class StageClock {
 };
 
 // Times a scope and adds it to a stage. Inside the scope of another timer it adds nothing: the outermost
-// stage counts, so that the stages never overlap (the solves of iterative refinement belong to `refine`). Nor does it in
-// a task on another thread than the one that started the clock.
+// stage counts, so that the stages never overlap (the solves of iterative refinement belong to `refine`). Nor
+// does it in a task on another thread than the one that started the clock.
 class StageTimer {
  public:
   StageTimer(StageClock& clock, Stage stage)

@@ -162,8 +162,8 @@ bool is_curved(const StepProblem& p, std::size_t r) {
   return !p.contact_set.empty() && p.contact_set[r] != ContactSet::box;
 }
 
-// Of a friction row: those of a contact without a box, or with a turned one, stand right behind their normal row, and nowhere
-// else.
+// Of a friction row: those of a contact without a box, or with a turned one, stand right behind their normal
+// row, and nowhere else.
 std::string find_stray_error(const StepProblem& p, std::size_t r) {
   if (p.row_kind[r] != RowKind::friction) return {};
   const int normal = p.friction_row[r];

@@ -19,17 +19,17 @@
 // and w' made from w alike: lo <= lambda' <= hi and so on. It is the problem whose rows are J' = (c J_t1 + s
 // J_t2, -s J_t1 + c J_t2) with b' made alike, in other coordinates. Only the interior point takes it.
 //
-// Nor need it be a box at all. With n the normal row of a contact, t its one or two tangent rows and mu their friction
-// coefficient, the three sets of ContactSet are
+// Nor need it be a box at all. With n the normal row of a contact, t its one or two tangent rows and mu their
+// friction coefficient, the three sets of ContactSet are
 //
 //     box      lo <= lambda <= hi for every row, with bounds that were frozen before the solve
 //     cone     |lambda_t| <= mu lambda_n,  mu |w_t| <= w_n,  lambda_n w_n + lambda_t . w_t = 0
-//     coulomb  |lambda_t| <= mu lambda_n,  lambda_n >= 0 complementary to w_n >= 0, and where w_t is not zero the friction
-//              lambda_t = -mu lambda_n w_t / |w_t|: the cone with w_n + mu |w_t| in the place of w_n (de Saxce and Feng,
-//              Mathematical and Computer Modelling 28, 1998)
+//     coulomb  |lambda_t| <= mu lambda_n,  lambda_n >= 0 complementary to w_n >= 0, and where w_t is not zero
+//              the friction lambda_t = -mu lambda_n w_t / |w_t|: the cone with w_n + mu |w_t| in the place of
+//              w_n (de Saxce and Feng, Mathematical and Computer Modelling 28, 1998)
 //
-// The cone is a convex problem like the box; its price is that sliding contacts part at mu |w_t|. Coulomb's law has not that
-// flaw, and is not convex: a solution need not be unique.
+// The cone is a convex problem like the box; its price is that sliding contacts part at mu |w_t|. Coulomb's
+// law has not that flaw, and is not convex: a solution need not be unique.
 #pragma once
 
 #include <cstdint>
@@ -66,10 +66,10 @@ struct StepProblem {
   // (m), or empty where no box is turned: on a normal row, the angle of the box of the two friction rows that
   // follow it and have its bodies and one compliance; 0 on all other rows.
   std::vector<double> box_angle_rad;
-  // (m), or empty where every contact has a box: on a normal row, the set of its impulse and those of the one or two
-  // friction rows that follow it and have its bodies and one friction coefficient > 0; box on all other rows. Where it is no
-  // box, the bounds are (0, infinity) on the normal row and (-infinity, infinity) on the friction rows, and nothing
-  // is turned.
+  // (m), or empty where every contact has a box: on a normal row, the set of its impulse and those of the one
+  // or two friction rows that follow it and have its bodies and one friction coefficient > 0; box on all
+  // other rows. Where it is no box, the bounds are (0, infinity) on the normal row and (-infinity, infinity)
+  // on the friction rows, and nothing is turned.
   std::vector<ContactSet> contact_set;
 
   int body_count() const { return static_cast<int>(free_velocity.size() / 6); }

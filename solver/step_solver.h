@@ -26,8 +26,8 @@ const char* to_string(SolveStatus status);
 std::optional<SolveStatus> find_status(std::string_view name);  // by what to_string says
 std::vector<std::string> status_names();
 
-// Whether a solve with this status left impulses that can be judged, and numbers about itself. One that was out of time
-// was ended from outside and left none.
+// Whether a solve with this status left impulses that can be judged, and numbers about itself. One that was
+// out of time was ended from outside and left none.
 bool has_result(SolveStatus status);
 bool has_result(std::string_view status);  // by what to_string says; false for a name that is none
 
@@ -35,14 +35,19 @@ bool has_result(std::string_view status);  // by what to_string says; false for 
 struct SolveOptions {
   int threads = 1;                // >= 1
   double target_m_per_s = 1e-11;  // residual aimed at; exact is judged at kExactLimit
-  // Solves are those of consecutive steps of one simulation, each from the solution before: what pays is carried from
-  // one to the next (carried_factor.h), and results depend on the steps before, within the target.
+  // Solves are those of consecutive steps of one simulation, each from the solution before: what pays is
+  // carried from one to the next (carried_factor.h), and results depend on the steps before, within the
+  // target.
   bool session = false;
   // Where there is one and it comes true, a solve ends with Stopped at its next factorisation,
   // back-substitution, sweep or block column of a dense interface. Must outlive the solver.
   const std::atomic<bool>* stop = nullptr;
-  DispatchCost dispatch = {};  // that the model of a one-thread solve charges
-  // Of the factor and its workspace: what was predicted to need more is out_of_memory before any of it is allocated.
+  // Whether a solve on one thread, once its time is taken, is modelled on more workers
+  // (StageTimes::model_ms), and what the dispatch of a task is charged then. A session is not.
+  bool models_workers = false;
+  DispatchCost dispatch = {};
+  // Of the factor and its workspace: what was predicted to need more is out_of_memory before any of it is
+  // allocated.
   std::uint64_t memory_limit_bytes = std::numeric_limits<std::uint64_t>::max();
 };
 

@@ -6,9 +6,10 @@
 namespace cleave {
 namespace {
 
-// A sweep is no gradient step (its iteration matrix is not symmetric), and more momentum brings it astray: from a cold start
-// twelve steps of a pile of 200 boxes and one each of piles of 200, 600 and 800 (cfm 1e-5) take 42 factorisations after 60 sweeps
-// with 0.8, 51 with 0.85, 65 with 0.9; 67 without any, after 80 sweeps.
+// A sweep is no gradient step (its iteration matrix is not symmetric), and more momentum brings it astray:
+// from a cold start twelve steps of a pile of 200 boxes and one each of piles of 200, 600 and 800 (cfm 1e-5)
+// take 42 factorisations after 60 sweeps with 0.8, 51 with 0.85, 65 with 0.9; 67 without any, after 80
+// sweeps.
 constexpr double kMostShare = 0.8;
 
 }  // namespace

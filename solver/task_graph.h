@@ -1,8 +1,8 @@
 // Which tasks of a parallel stage wait for which others, and which belong together.
 //
-// Tasks are numbered so that each waits for lower numbers only: ascending order is an order to run them in on one
-// thread. On several threads a task goes to its home where that thread is free, so that data which tasks of one stage
-// after another work on stay in the cache of one core.
+// Tasks are numbered so that each waits for lower numbers only: ascending order is an order to run them in on
+// one thread. On several threads a task goes to its home where that thread is free, so that data which tasks
+// of one stage after another work on stay in the cache of one core.
 #pragma once
 
 #include <span>

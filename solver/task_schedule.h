@@ -1,5 +1,5 @@
-// How long the tasks of a parallel stage take on p workers: list schedules of Graham 1969. Communication between
-// workers is left out.
+// How long the tasks of a parallel stage take on p workers: list schedules of Graham 1969. Communication
+// between workers is left out.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,9 @@ namespace cleave {
 // Of independent tasks: the longest goes first to the worker that is free first. worker_ms is scratch.
 double makespan_ms(std::span<const double> sorted_descending_ms, int workers, std::vector<double>& worker_ms);
 
-// Of a graph: whenever a worker is free, it takes of the tasks that are ready the one with the longest way to the end
-// (its own time and the longest of those that wait for it), of two with the same way that of the lower number.
+// Of a graph: whenever a worker is free, it takes of the tasks that are ready the one with the longest way to
+// the end (its own time and the longest of those that wait for it), of two with the same way that of the
+// lower number.
 class GraphSchedule {
  public:
   // Finds the ways. The graph and the times stay where they are until the last makespan.

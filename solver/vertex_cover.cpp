@@ -56,8 +56,8 @@ class CoverSearch {
     return bipartite;
   }
 
-  // Hopcroft and Karp 1973: rounds of augmenting paths that are shortest to begin with, O(edges sqrt(nodes)). The
-  // cover does not depend on which maximum matching is found.
+  // Hopcroft and Karp 1973: rounds of augmenting paths that are shortest to begin with, O(edges sqrt(nodes)).
+  // The cover does not depend on which maximum matching is found.
   void match() {
     while (find_depths()) {
       for (int left : component_)
@@ -65,7 +65,8 @@ class CoverSearch {
     }
   }
 
-  // Depth of every left node along alternating paths from the free ones; false when no path ends at a free right node.
+  // Depth of every left node along alternating paths from the free ones; false when no path ends at a free
+  // right node.
   bool find_depths() {
     bool free_right = false;
     queue_.clear();
@@ -87,8 +88,8 @@ class CoverSearch {
     return free_right;
   }
 
-  // Grows the matching along an alternating path of rising depth from a free left node, if there is one left. A path
-  // may be as long as the component, so it is kept here and not on the stack.
+  // Grows the matching along an alternating path of rising depth from a free left node, if there is one left.
+  // A path may be as long as the component, so it is kept here and not on the stack.
   void augment(int free_left) {
     path_.assign(1, free_left);
     while (!path_.empty()) {

@@ -1,14 +1,16 @@
-// Colours for the groups of rows of a step by chance: Fratarcangeli, Tibaldo, Pellacini: Vivace, ACM Transactions on Graphics
-// 35(6), 2016, section 4.1 (algorithm 1). Nodes are groups, adjacent where they share a dynamic body (group_coloring.h).
+// Colours for the groups of rows of a step by chance: Fratarcangeli, Tibaldo, Pellacini: Vivace, ACM
+// Transactions on Graphics 35(6), 2016, section 4.1 (algorithm 1). Nodes are groups, adjacent where they
+// share a dynamic body (group_coloring.h).
 //
-// Each node has a palette, at first of its number of neighbours over kShrinking colours. In a round every node without a colour
+// Each node has a palette, at first of its number of neighbours over kShrinking colours. In a round every
+// node without a colour
 //
 //     draws one of its palette that no neighbour has got,
 //     keeps it where no neighbour before it, by number, drew the same in this round,
 //     gets one more colour into its palette where none of it is left.
 //
-// Rounds go on until every node has a colour. (Two neighbours with the same single colour would draw it for ever if neither
-// kept it.) What is drawn comes from the seed and the order of nodes alone.
+// Rounds go on until every node has a colour. (Two neighbours with the same single colour would draw it for
+// ever if neither kept it.) What is drawn comes from the seed and the order of nodes alone.
 #pragma once
 
 #include <cstdint>

@@ -71,8 +71,8 @@ WorkerTeam& WorkerTeam::shared(int threads) {
   return *team;
 }
 
-// Wakes who sleeps and ends every look-out. A thread announces itself as watching before it looks into the queues for the
-// last time, so that either it sees the new task or is seen here.
+// Wakes who sleeps and ends every look-out. A thread announces itself as watching before it looks into the
+// queues for the last time, so that either it sees the new task or is seen here.
 void WorkerTeam::call_others() {
   if (watching_.load() == 0) return;
   calls_.fetch_add(1);

@@ -7,9 +7,9 @@
 // how long can be set by CLEAVE_LOOK_OUT_US in the environment, where a machine is known to be one's own.
 // OpenMP makes the threads, so its settings apply to them: OMP_PLACES, OMP_PROC_BIND, OMP_STACKSIZE.
 //
-// Every thread has two queues, of tasks that have waited for others, which come first, and of tasks that wait for none. A
-// task is put into a queue of its home, and a thread whose own are empty takes from the others': the same tasks of stage
-// after stage mostly meet the same core and what it has in its cache.
+// Every thread has two queues, of tasks that have waited for others, which come first, and of tasks that wait
+// for none. A task is put into a queue of its home, and a thread whose own are empty takes from the others':
+// the same tasks of stage after stage mostly meet the same core and what it has in its cache.
 #pragma once
 
 #include <atomic>
@@ -39,15 +39,15 @@ class WorkerTeam {
   using Task = void (*)(void* context, int index);
 
   // Calls task(context, i) for i = 0..count-1, in any order, and returns when all have returned. The first
-  // exception of a task is thrown here, once no task is running; tasks not started by then are left out. No task may
-  // wait for another. Not to be called from within a task.
+  // exception of a task is thrown here, once no task is running; tasks not started by then are left out. No
+  // task may wait for another. Not to be called from within a task.
   void run(int count, Task task, void* context);
 
   // The tasks of a graph, each started when those it waits for have returned.
   void run(const TaskGraph& graph, Task task, void* context);
 
-  // For tests: tasks of graphs are listed in an order drawn from this seed, as far as the graph allows; 0, in the order
-  // in which they become ready. Not while a stage runs.
+  // For tests: tasks of graphs are listed in an order drawn from this seed, as far as the graph allows; 0, in
+  // the order in which they become ready. Not while a stage runs.
   void shuffle(std::uint64_t seed) { shuffle_seed_ = seed; }
   bool shuffles() const { return shuffle_seed_ != 0; }
 
@@ -80,8 +80,8 @@ class WorkerTeam {
 
   const int threads_;
   std::mutex one_caller_;
-  // The stage at hand. Written by its caller while nobody holds a task. What threads write while tasks run has cache lines
-  // of its own: a line that another core wrote last takes as long to come as a small task.
+  // The stage at hand. Written by its caller while nobody holds a task. What threads write while tasks run
+  // has cache lines of its own: a line that another core wrote last takes as long to come as a small task.
   alignas(64) Task task_ = nullptr;
   void* context_ = nullptr;
   const TaskGraph* graph_ = nullptr;

@@ -72,9 +72,9 @@ bool names_parameter(const std::string& text, const std::string& name);
 
 // Reads the text against the parameters of its algorithm; what it does not give comes from `common` and then
 // from the defaults. In the text that is kept a file of kind content is its fingerprint. option: what errors
-// begin with ("--partitioner"). Throws std::invalid_argument with one line for a text of another form, a parameter
-// that the algorithm does not have (naming who has it), a value that is not allowed, and a parameter without
-// default that is given nowhere.
+// begin with ("--partitioner"). Throws std::invalid_argument with one line for a text of another form, a
+// parameter that the algorithm does not have (naming who has it), a value that is not allowed, and a
+// parameter without default that is given nowhere.
 Algorithm read_algorithm(const std::string& option, const std::string& text,
                          std::span<const Parameter> parameters,
                          const std::map<std::string, std::string>& common, const ParameterOwners& owners);

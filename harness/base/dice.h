@@ -1,6 +1,6 @@
-// Dice that fall alike on every machine: the 64-bit Mersenne Twister (Matsumoto & Nishimura 1998), whose bits the
-// C++ standard fixes, and integer arithmetic on them. The distributions of the standard library differ between
-// implementations.
+// Dice that fall alike on every machine: the 64-bit Mersenne Twister (Matsumoto & Nishimura 1998), whose bits
+// the C++ standard fixes, and integer arithmetic on them. The distributions of the standard library differ
+// between implementations.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@ class Dice {
  public:
   explicit Dice(std::uint64_t seed) : engine_(seed) {}
 
-  // Every integer in [0, count) is equally likely. count >= 1. The lowest 2^64 mod count words are thrown away,
-  // so that as many words stay for each.
+  // Every integer in [0, count) is equally likely. count >= 1. The lowest 2^64 mod count words are thrown
+  // away, so that as many words stay for each.
   std::uint64_t below(std::uint64_t count) {
     const std::uint64_t thrown_away = (0 - count) % count;
     std::uint64_t word = engine_();

@@ -1,5 +1,5 @@
-// A copy of this process for work that may crash, hang or take all memory: the child alone meets that, and sends back plain bytes,
-// which the caller checks.
+// A copy of this process for work that may crash, hang or take all memory: the child alone meets that, and
+// sends back plain bytes, which the caller checks.
 #pragma once
 
 #include <sys/types.h>
@@ -21,15 +21,16 @@ class ForkedChild {
     std::string bytes;
   };
 
-  // work runs in the child, which has the calling thread alone, and must not throw. Its crashes leave no core and run no handler of
-  // the parent's, what it prints is lost, and it does not outlive the parent. Throws std::system_error where the system makes no
-  // process.
+  // work runs in the child, which has the calling thread alone, and must not throw. Its crashes leave no core
+  // and run no handler of the parent's, what it prints is lost, and it does not outlive the parent. Throws
+  // std::system_error where the system makes no process.
   explicit ForkedChild(const std::function<Message()>& work);
   ~ForkedChild();  // ends it where it still works
   ForkedChild(const ForkedChild&) = delete;
   ForkedChild& operator=(const ForkedChild&) = delete;
 
-  // Waits for what it sends; kind 0 where it ended without. False where the deadline came first. Throws Stopped where stop comes true.
+  // Waits for what it sends; kind 0 where it ended without. False where the deadline came first. Throws
+  // Stopped where stop comes true.
   bool receive(Message& message, Clock::time_point deadline = Clock::time_point::max(),
                const std::atomic<bool>* stop = nullptr);
 

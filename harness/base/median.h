@@ -1,4 +1,5 @@
-// Medians: of an even number of values the mean of the middle two, or the lower of them where it is to be one that occurs.
+// Medians: of an even number of values the mean of the middle two, or the lower of them where it is to be one
+// that occurs.
 #pragma once
 
 #include <algorithm>

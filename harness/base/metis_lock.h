@@ -1,5 +1,5 @@
-// METIS draws from rand() of the C library, whose state the whole process shares: whoever calls METIS holds this lock, so that
-// its numbers are its own.
+// METIS draws from rand() of the C library, whose state the whole process shares: whoever calls METIS holds
+// this lock, so that its numbers are its own.
 #pragma once
 
 #include <mutex>

@@ -28,8 +28,8 @@ double parse_number(const std::string& option, const std::string& text, const Ra
 int parse_integer(const std::string& option, const std::string& text, const Range& range);
 std::uint64_t parse_seed(const std::string& option, const std::string& text);
 
-// Reads a text that is one number; "nan" and "inf" are floating-point ones. std::errc::invalid_argument for any other text,
-// result_out_of_range for a number that does not fit.
+// Reads a text that is one number; "nan" and "inf" are floating-point ones. std::errc::invalid_argument for
+// any other text, result_out_of_range for a number that does not fit.
 template <class Number>
 std::errc error_of_whole(const std::string& text, Number& value) {
   const char* end = text.data() + text.size();

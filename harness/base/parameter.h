@@ -12,8 +12,8 @@
 namespace cleave {
 
 struct Parameter {
-  // numbers: several, "10,100,1000". path: a file whose content counts and whose name does not. content: of such a file
-  // the value is the fingerprint itself, so that it is a word like others once it was read.
+  // numbers: several, "10,100,1000". path: a file whose content counts and whose name does not. content: of
+  // such a file the value is the fingerprint itself, so that it is a word like others once it was read.
   enum class Kind { integer, number, numbers, word, flag, path, content };
 
   std::string name;  // as in name@parameter=value: "max-bodies"; rows that share a name share the declaration
@@ -24,8 +24,8 @@ struct Parameter {
   std::string unit = {};                // empty: a pure number, or none
   std::string help = {};                // one line
   std::string source = {};              // where it is described or its default was measured; may be empty
-  // Of content: reads what a text names and returns the fingerprint; a fingerprint stays as it is. option: what errors
-  // begin with.
+  // Of content: reads what a text names and returns the fingerprint; a fingerprint stays as it is. option:
+  // what errors begin with.
   std::string (*read_content)(const std::string& option, const std::string& text) = nullptr;
 };
 

@@ -36,6 +36,12 @@ bool is_control(std::uint32_t character) {
 
 }  // namespace
 
+bool is_utf8(std::string_view text) {
+  while (!text.empty())
+    if (take_character(text) == kNoCharacter) return false;
+  return true;
+}
+
 bool is_printable_utf8(std::string_view text) {
   while (!text.empty())
     if (const std::uint32_t character = take_character(text);

@@ -6,10 +6,13 @@
 
 namespace cleave {
 
+bool is_utf8(std::string_view text);
+
 // Well-formed UTF-8 without control characters and line ends of any kind.
 bool is_printable_utf8(std::string_view text);
 
-// The text with every byte outside ASCII's printable ones as \x0a, where it is not printable; else the text itself.
+// The text with every byte outside ASCII's printable ones as \x0a, where it is not printable; else the text
+// itself.
 std::string printable(std::string_view text);
 
 // Characters of a text in UTF-8: their number, and the text of the first ones.

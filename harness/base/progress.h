@@ -1,5 +1,5 @@
-// The progress line on the terminal. Rewritten in place about once a second on a terminal, else a line of its own about
-// every ten seconds. Silent for work that is over sooner.
+// The progress line on the terminal. Rewritten in place about once a second on a terminal, else a line of its
+// own about every ten seconds. Silent for work that is over sooner.
 #pragma once
 
 #include <chrono>
@@ -17,8 +17,8 @@ class ProgressLine {
 
   // Steps done, elapsed and expected time, which expected_seconds reads again.
   void update(long long done, long long total);
-  // For other work: whether it is time for a line, and the line behind the label. On a terminal it is cut to what fits beside
-  // the cursor, as a line that wraps cannot be rewritten.
+  // For other work: whether it is time for a line, and the line behind the label. On a terminal it is cut to
+  // what fits beside the cursor, as a line that wraps cannot be rewritten.
   bool is_due() const;
   void show(const std::string& text);
 

@@ -1,5 +1,5 @@
-// How sure a ratio of medians is: a bootstrap over pairs (Efron and Tibshirani, An Introduction to the Bootstrap, 1993,
-// chapter 13).
+// How sure a ratio of medians is: a bootstrap over pairs (Efron and Tibshirani, An Introduction to the
+// Bootstrap, 1993, chapter 13).
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ struct RatioInterval {
 inline constexpr int kFewestPairs = 5;
 inline constexpr int kResamples = 2000;
 
-// a, b: the same measurement in two settings, pair by pair; at least one pair. Pairs are drawn together, so that what both
-// have in common drops out. The seed makes the draws.
+// a, b: the same measurement in two settings, pair by pair; at least one pair. Pairs are drawn together, so
+// that what both have in common drops out. The seed makes the draws.
 RatioInterval ratio_interval(std::span<const double> a, std::span<const double> b, std::uint64_t seed);
 
 }  // namespace cleave

@@ -17,8 +17,8 @@ auto in_context(const std::string& context, const Read& read) {
   }
 }
 
-// What is wrong, for the end of a line of a check: what look() returns, if it returns a text, or "; " and what it refuses; empty
-// where nothing is.
+// What is wrong, for the end of a line of a check: what look() returns, if it returns a text, or "; " and
+// what it refuses; empty where nothing is.
 template <class Look>
 std::string wrong_in(const Look& look) {
   try {

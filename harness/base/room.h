@@ -1,5 +1,5 @@
-// For libraries that crash where they find no memory, or end the process: asked before they are called, memory that is not
-// there is an error like any other.
+// For libraries that crash where they find no memory, or end the process: asked before they are called,
+// memory that is not there is an error like any other.
 #pragma once
 
 #include <cstddef>

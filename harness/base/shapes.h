@@ -16,7 +16,7 @@ enum class GeomType : std::uint8_t { box = 0, sphere, capsule, cylinder, convex,
 //     capsule    radius, length without caps     centre, along z
 //     cylinder   radius, length                  centre, along z
 //     convex     -                               frame of its convex_points
-//     plane      -                               the point nearest the world's origin; z is the outward normal
+//     plane      -                               the point nearest the world's origin, z the outward normal
 //
 // Unused sizes are zero.
 struct ProblemShapes {

@@ -6,7 +6,8 @@ namespace {
 std::atomic<bool> stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-// The next one ends the program as if nothing had been set, unless it is a hang-up: a terminal that is closed may send two.
+// The next one ends the program as if nothing had been set, unless it is a hang-up: a terminal that is closed
+// may send two.
 void take_stop(int) {
   stop = true;
   for (const int signal : kStopSignals) ::signal(signal, signal == SIGHUP ? SIG_IGN : SIG_DFL);

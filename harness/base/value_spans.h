@@ -1,4 +1,5 @@
-// Questions about spans of numbers. The judge (solver/residual.h) asks its own: it shares nothing with who it judges.
+// Questions about spans of numbers. The judge (solver/residual.h) asks its own: it shares nothing with who it
+// judges.
 #pragma once
 
 #include <algorithm>

@@ -23,7 +23,8 @@ bool is_whole(const fs::path& share) {
   }
 }
 
-// What remains of a row of an index that is not whole where no log vouches for it: its directory has to say the rest.
+// What remains of a row of an index that is not whole where no log vouches for it: its directory has to say
+// the rest.
 IndexRow unsure(const IndexRow& row) {
   IndexRow pending;
   pending.cell = row.cell;

@@ -2,12 +2,13 @@
 //
 //     DIR/spec.toml index.csv checksums     the spec as it was read last, a row a cell, SHA-256 of both
 //     DIR/cells/NAME                        the output directory of a cell
-//     DIR/failed/NAME.log                   of a cell whose process did not come to its end: why, and what it printed last
+//     DIR/failed/NAME.log                   of a cell whose process did not come to its end: why, and what it
+//                                           printed last
 //     DIR/shards/2of4/                      spec.toml, index.csv and checksums of the second of four shares
 //     DIR/slurm/                            job files and what they printed, of scripts/slurm/submit
 //
-// What is done is known by the directories of the cells alone. The index is written when the campaign begins, every few seconds
-// and when it ends, and spares a resumed campaign the reading of every manifest.
+// What is done is known by the directories of the cells alone. The index is written when the campaign begins,
+// every few seconds and when it ends, and spares a resumed campaign the reading of every manifest.
 #pragma once
 
 #include <limits>
@@ -41,7 +42,8 @@ struct Spec {
   std::vector<CampaignCell> cells;
 };
 
-// Throws std::invalid_argument with one line for a directory of something else, and for an index of another version.
+// Throws std::invalid_argument with one line for a directory of something else, and for an index of another
+// version.
 void check_campaign_directory(const std::string& out);
 
 // The cells of one share with what is known of them. Making one changes nothing.
@@ -56,7 +58,8 @@ class Campaign {
   const std::string& build() const { return build_; }
   int of_other_build() const { return of_other_build_; }  // pending cells that another build has done
   CellTimes times() const;                                // of the cells that have ended
-  // For those that are pending, those that run from their beginning, so many at a time; nothing before the first has ended.
+  // For those that are pending, those that run from their beginning, so many at a time; nothing before the
+  // first has ended.
   std::optional<double> seconds_left(const CellTimes& times, int jobs) const;
 
   std::vector<IndexRow> all_rows() const;

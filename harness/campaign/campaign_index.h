@@ -1,8 +1,8 @@
-// The index of a campaign: a row a cell, whatever became of it. Columns are appended at the end; a table of other columns is of
-// another version.
+// The index of a campaign: a row a cell, whatever became of it. Columns are appended at the end; a table of
+// other columns is of another version.
 //
-// Where it lies: DIR/index.csv for a campaign that one process runs, DIR/shards/IofN/index.csv for a share of it. Beside each lie
-// the spec as it was read (spec.toml) and the checksums of both.
+// Where it lies: DIR/index.csv for a campaign that one process runs, DIR/shards/IofN/index.csv for a share of
+// it. Beside each lie the spec as it was read (spec.toml) and the checksums of both.
 #pragma once
 
 #include <filesystem>
@@ -73,8 +73,8 @@ void visit_index(Row&& row, Visit&& visit) {
 // Header and rows.
 std::string index_text(const std::vector<IndexRow>& rows);
 
-// Throws std::invalid_argument naming the file and what is wrong: it cannot be read, its columns are others, a line that no
-// program wrote.
+// Throws std::invalid_argument naming the file and what is wrong: it cannot be read, its columns are others,
+// a line that no program wrote.
 std::vector<IndexRow> read_index(const std::filesystem::path& path);
 
 // The same errors of its first line alone.

@@ -1,4 +1,5 @@
-// What a spec calls its cells: label = "rocks_{bodies}/pgs_{sweeps}", where {key} stands for the value that the cell has of that key.
+// What a spec calls its cells: label = "rocks_{bodies}/pgs_{sweeps}", where {key} stands for the value that
+// the cell has of that key.
 #pragma once
 
 #include <map>
@@ -12,8 +13,8 @@ inline constexpr const char* kLabelKey = "label";
 
 class CellLabel {
  public:
-  // The label of a table; where it has none, that of `outer`, which may be nullptr. Throws std::invalid_argument
-  // "FILE:LINE: label: text" for what is no printable text.
+  // The label of a table; where it has none, that of `outer`, which may be nullptr. Throws
+  // std::invalid_argument "FILE:LINE: label: text" for what is no printable text.
   CellLabel(const toml::table& table, const std::string& file, const CellLabel* outer = nullptr);
 
   // Empty where the spec has none. Throws the same for a { without } and for a key that the cell has not.

@@ -27,8 +27,8 @@ struct CellEnd {
   std::string last_line() const;
 };
 
-// The process gets no terminal and a process group of its own, so that an interrupt on the keyboard reaches it once, through us;
-// it is killed when we die, however that happens. What it prints is kept in memory.
+// The process gets no terminal and a process group of its own, so that an interrupt on the keyboard reaches
+// it once, through us; it is killed when we die, however that happens. What it prints is kept in memory.
 class CellProcess {
  public:
   // Throws std::runtime_error where no process can be made.
@@ -54,11 +54,12 @@ class CellProcess {
   bool ended_ = false;
 };
 
-// Makes the process and waits for its end; signals to stop, which are waited for too, are passed on to it as SIGTERM. True into
-// `interrupted` where one came.
+// Makes the process and waits for its end; signals to stop, which are waited for too, are passed on to it as
+// SIGTERM. True into `interrupted` where one came.
 CellEnd run_to_end(const CellCommand& command, bool& interrupted);
 
-// While it stands, these signals wait until they are asked for: SIGCHLD and those to stop. Processes of cells get them as ever.
+// While it stands, these signals wait until they are asked for: SIGCHLD and those to stop. Processes of cells
+// get them as ever.
 class SignalsWaitedFor {
  public:
   SignalsWaitedFor();

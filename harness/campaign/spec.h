@@ -1,23 +1,26 @@
-// A campaign as a TOML file: keys are option names of `cleave run`, and cells are the combinations of their values.
+// A campaign as a TOML file: keys are option names of `cleave run`, and cells are the combinations of their
+// values.
 //
 //     scene = "rock_pile"
 //     bodies = [50, 100, 200]                         a list is a dimension
-//     cfm = { from = 1e-8, to = 1e-5, factor = 10 }   so is a range, with both ends; step adds, factor multiplies
+//     cfm = { from = 1e-8, to = 1e-5, factor = 10 }   a range, with both ends; step adds, factor multiplies
 //     partitioner = "mindp,mix"                       a text with commas is one value: these run in lockstep
 //     record-motion = true                            a flag is given or not
 //     rounds = 3                                      all cells, three times over: no option of `run`
-//     label = "rocks_{bodies}/cfm_{cfm}"              what a cell is called, with its values: no option of `run`
-//     [[exclude]]                                     removes cells that have, of every key here, one of its values
-//     bodies = 200
-//     [[include]]                                     adds the cells of a grid of its own, after every exclusion; keys
-//     bodies = 400                                    of the file with one value hold here too, unless given anew
+//     label = "rocks_{bodies}/cfm_{cfm}"              what cells are called, with values: no option of `run`
+//     [[exclude]]                                     removes cells that have, of every key here, one of
+//     bodies = 200                                    its values
+//     [[include]]                                     adds the cells of a grid of its own, after every
+//     bodies = 400                                    exclusion; keys of the file with one value hold here
+//                                                     too, unless given anew
 //
-// A cell that an [[include]] makes and that is there already is the same cell, with the label that it has. The label of the file holds in
-// every [[include]] without one; no two cells may have the same.
+// A cell that an [[include]] makes and that is there already is the same cell, with the label that it has.
+// The label of the file holds in every [[include]] without one; no two cells may have the same.
 //
-// Without `scene` the keys of the file make no cells by themselves and hold in every [[include]], lists too, and so do its exclusions.
-// Cells stand in the order of the product, the key written last varying fastest, then those of every [[include]]; a round is all
-// of them, so that what drifts meanwhile meets all cells alike.
+// Without `scene` the keys of the file make no cells by themselves and hold in every [[include]], lists too,
+// and so do its exclusions. Cells stand in the order of the product, the key written last varying fastest,
+// then those of every [[include]]; a round is all of them, so that what drifts meanwhile meets all cells
+// alike.
 #pragma once
 
 #include <map>
@@ -43,9 +46,9 @@ struct CampaignCell {
 
 inline constexpr int kMostCells = 100000;
 
-// Throws std::invalid_argument "spec.toml:7: bodys: ...": no TOML, an unknown key (and the nearest one), a value that `run`
-// would refuse before it makes anything, a rule that removes or adds nothing, a dimension that makes a cell twice, no cell at all, more than kMostCells.
-// file: what errors call the text.
+// Throws std::invalid_argument "spec.toml:7: bodys: ...": no TOML, an unknown key (and the nearest one), a
+// value that `run` would refuse before it makes anything, a rule that removes or adds nothing, a dimension
+// that makes a cell twice, no cell at all, more than kMostCells. file: what errors call the text.
 std::vector<CampaignCell> parse_campaign(const std::string& text, const std::string& file);
 
 // All bytes of the file. Throws the same where it cannot be read.

@@ -26,7 +26,8 @@ std::string value_text(double value) {
   return is_whole ? std::to_string(static_cast<long long>(value)) : number_text(value);
 }
 
-// Twelve digits are more than anyone writes, and 0.30000000000000004 is 0.3 in them. Whole numbers are as they are.
+// Twelve digits are more than anyone writes, and 0.30000000000000004 is 0.3 in them. Whole numbers are as
+// they are.
 double rounded(double value) {
   if (value == std::floor(value)) return value;
   char text[40];

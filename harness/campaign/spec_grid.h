@@ -20,8 +20,9 @@ using Grid = std::vector<Dimension>;
 // The dimension of that key, nullptr where there is none.
 const Dimension* find_dimension(const Grid& grid, const std::string& key);
 
-// In the order of the file. known: keys that there may be. others: those of them that are no dimensions and are passed over. Throws
-// std::invalid_argument "FILE:LINE: KEY: text" for an unknown key and for a value of another form.
+// In the order of the file. known: keys that there may be. others: those of them that are no dimensions and
+// are passed over. Throws std::invalid_argument "FILE:LINE: KEY: text" for an unknown key and for a value of
+// another form.
 Grid read_grid(const toml::table& table, const std::string& file, const std::vector<std::string>& known,
                const std::vector<std::string>& others = {});
 

@@ -113,7 +113,8 @@ class Sweep {
     return fs::path(options_.out) / kCellsFolder / row.cell;
   }
 
-  // A run that was killed after its last file and before its lock is complete, and the file of the lock is not of it.
+  // A run that was killed after its last file and before its lock is complete, and the file of the lock is
+  // not of it.
   void unlock(const fs::path& directory) const {
     if (!fs::exists(directory / kLockFile) || is_run_elsewhere(directory)) return;
     try {
@@ -140,7 +141,8 @@ class Sweep {
     return {first, first + options_.pin};
   }
 
-  // The first one is for the cells; a second one is for us, unless it is a hang-up: a terminal that is closed may send two.
+  // The first one is for the cells; a second one is for us, unless it is a hang-up: a terminal that is closed
+  // may send two.
   void stop(int signal) {
     if (summary_.interrupted && signal == SIGHUP) return;
     if (summary_.interrupted) {
@@ -262,7 +264,8 @@ class Sweep {
     std::string text = std::to_string(done_) + " of " + std::to_string(cells.size()) + " cells, " +
                        std::to_string(failed_) + " failed";
     if (const auto left_s = seconds_left())
-      text += *left_s > 0 ? ", about " + seconds_text(*left_s) + " to go" : ", longer than cells like these took";
+      text +=
+          *left_s > 0 ? ", about " + seconds_text(*left_s) + " to go" : ", longer than cells like these took";
     for (const RunningCell& cell : running_)
       text += "; " + campaign_.rows()[cell.place].title() + " for " + seconds_text(cell.process.seconds());
     progress_.show(text);

@@ -1,9 +1,11 @@
-// cleave calibrate: times the solver on problems and fits the cost model of partition/cost_model.h to this machine.
+// cleave calibrate: times the solver on problems and fits the cost model of partition/cost_model.h to this
+// machine.
 //
-// Every problem is split by several partitioners, refiners and sizes of part, and solved by each kernel of the model on one
-// and on two threads, in rounds, the fastest of which counts: a core is not as fast in one minute as in the next. Every
-// second source of problems is held out: the errors that are reported are those on what the fit has not seen. Solves that
-// handed over to another strategy are left out of both, because they mix passes of two kinds.
+// Every problem is split by several partitioners, refiners and sizes of part, and solved by each kernel of
+// the model on one and on two threads, in rounds, the fastest of which counts: a core is not as fast in one
+// minute as in the next. Every second source of problems is held out: the errors that are reported are those
+// on what the fit has not seen. Solves that handed over to another strategy are left out of both, because
+// they mix passes of two kinds.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -31,10 +33,11 @@ namespace {
 
 struct CalibrateOptions {
   std::vector<std::string> files;
-  std::string out, repeats = "2", seed = "1";
+  std::string out, repeats = "2", seed;  // empty: not given
   bool force = false;
 };
 
+constexpr const char* kSeed = "1";
 constexpr int kThreads[] = {1, 2};
 constexpr int kRounds = 3;
 constexpr const char* kStrategy = "pivot:";
@@ -212,14 +215,18 @@ std::vector<std::pair<std::string, std::string>> about_this(const std::vector<st
           {"cpu", machine.cpu_model},
           {"cores", std::to_string(machine.cores)},
           {"load", number_text(machine.load_average[0])},
-          {"seed", options.seed},
+          {"seed", !options.files.empty() ? "-"
+                   : options.seed.empty() ? kSeed
+                                          : options.seed},
           {"utc", utc_now()}};
 }
 
 int calibrate(const CalibrateOptions& options, const std::vector<std::string>& argv) {
   check_out_file(options.out, options.force);
   check_not_read(options.out, std::vector<std::filesystem::path>(options.files.begin(), options.files.end()));
-  const std::uint64_t seed = parse_seed("--seed", options.seed);
+  if (!options.files.empty() && !options.seed.empty())
+    throw std::invalid_argument("--seed: is of simulated scenes; leave it out beside problem files");
+  const std::uint64_t seed = parse_seed("--seed", options.seed.empty() ? kSeed : options.seed);
   solve_options(1, options.repeats);  // whether --repeats is a number
   auto about = about_this(argv, options);
   const std::vector<CalibrationProblem> problems =

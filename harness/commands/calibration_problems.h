@@ -17,7 +17,8 @@ struct CalibrationProblem {
 // Throws as read_problem_file.
 std::vector<CalibrationProblem> recorded_problems(const std::vector<std::string>& files);
 
-// Piles, towers, chains and silos of several sizes, several steps of each; a minute or so. seed: of the scenes.
+// Piles, towers, chains and silos of several sizes, several steps of each; a minute or so. seed: of the
+// scenes.
 std::vector<CalibrationProblem> simulated_problems(std::uint64_t seed);
 
 }  // namespace cleave

@@ -24,7 +24,8 @@ std::vector<std::string> long_options(const CLI::App& app) {
   return names;
 }
 
-// --name=value, or --name with its value or nothing behind it. Returns whether the next argument is the value.
+// --name=value, or --name with its value or nothing behind it. Returns whether the next argument is the
+// value.
 bool check_option(const CLI::Option& option, const std::string& argument, const std::string* next) {
   const std::size_t equals = argument.find('=');
   const std::string name = argument.substr(0, equals);

@@ -21,7 +21,8 @@ void check_out_file(const std::string& out, bool force);
 // Throws where the file to write, which may be overwritten, is one of those that are read.
 void check_not_read(const std::string& out, std::span<const std::filesystem::path> read);
 
-// --out of a command that writes the directory of a run: as check_output_directory, and no campaign may be there.
+// --out of a command that writes the directory of a run: as check_output_directory, and no campaign may be
+// there.
 void check_run_directory(const std::string& out, bool force, const std::vector<std::string>& files);
 
 // After parsing: throws for what `app` could not place, naming the nearest option.

@@ -1,4 +1,5 @@
-// cleave collect: the rows of many output directories in one table, with a table of the cells and one of the columns.
+// cleave collect: the rows of many output directories in one table, with a table of the cells and one of the
+// columns.
 //
 // `cell` and `machine` stand before the columns of steps.csv.
 #include <algorithm>
@@ -42,8 +43,8 @@ std::string line_of(std::span<const std::string> cells) {
   return joined(texts, ",");
 }
 
-// A row a cell; options that a cell does not have are empty. The header grows with the options that are met, at its end: a line
-// that was written before wants as many commas more.
+// A row a cell; options that a cell does not have are empty. The header grows with the options that are met,
+// at its end: a line that was written before wants as many commas more.
 class TableOfCells {
  public:
   void add(const MeasuredCell& cell, const StoredManifest& manifest, long rows) {

@@ -1,5 +1,6 @@
-// The files of `cleave collect`: results.csv has a row per measured cell and step; results.cells.csv a row per output directory,
-// joined by `cell`; results.columns.csv says what each column is; results.checksums has the SHA-256 of the three.
+// The files of `cleave collect`: results.csv has a row per measured cell and step; results.cells.csv a row
+// per output directory, joined by `cell`; results.columns.csv says what each column is; results.checksums has
+// the SHA-256 of the three.
 #pragma once
 
 #include <array>

@@ -1,8 +1,10 @@
 // cleave compare: the same cells measured twice, by two builds, on two machines or with two settings.
 //
-// Rows of A and B belong together where all columns of --by and the step are equal; several of one step (rounds) count by their
-// median. A line is a group of --by: the ratio of the medians over the steps that both solved, B over A, and its bootstrap
-// interval. Times of two processors are in no group of one campaign: `machine` in --by keeps them apart. A regression is a group whose whole interval lies above 1 + --allow, or that solved a step in A which B did not.
+// Rows of A and B belong together where all columns of --by and the step are equal; several of one step
+// (rounds) count by their median. A line is a group of --by: the ratio of the medians over the steps that
+// both solved, B over A, and its bootstrap interval. Times of two processors are in no group of one campaign:
+// `machine` in --by keeps them apart. A regression is a group whose whole interval lies above 1 + --allow, or
+// that solved a step in A which B did not.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

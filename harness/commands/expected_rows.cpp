@@ -39,7 +39,8 @@ CommonValues common_values(const StoredManifest& manifest) {
   return values;
 }
 
-// By its name and the parameters that the run gave it: one that reads files cannot be read again without them.
+// By its name and the parameters that the run gave it: one that reads files cannot be read again without
+// them.
 Algorithm stored_algorithm(const StoredManifest& manifest, const std::string& kind, const std::string& text) {
   if (content_of(kind, algorithm_name(text)) == nullptr)
     return read_named(kind, text, common_values(manifest));

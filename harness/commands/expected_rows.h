@@ -1,4 +1,5 @@
-// The rows that the manifest of a directory promises, in their order, with all that its options decide of them.
+// The rows that the manifest of a directory promises, in their order, with all that its options decide of
+// them.
 #pragma once
 
 #include <string>

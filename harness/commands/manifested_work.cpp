@@ -58,8 +58,8 @@ WorkDescription describe_work(const std::string& command, const std::vector<std:
           .memory_limit_gb = 1e-9 * static_cast<double>(options.memory_limit_bytes)};
 }
 
-void print_left_out(const RunOptions& options) {
-  for (const std::string& line : options.left_out) say(line);
+void print_notes(const RunOptions& options) {
+  for (const std::string& line : options.notes) say(line);
 }
 
 }  // namespace cleave

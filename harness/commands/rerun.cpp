@@ -1,5 +1,5 @@
-// cleave rerun: one run again, from its manifest and the files that it read; its rows must be those that it left, in all but times and
-// threads.
+// cleave rerun: one run again, from its manifest and the files that it read; its rows must be those that it
+// left, in all but times and threads.
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -25,6 +25,8 @@ struct RerunOptions {
 
 int rerun(const RerunOptions& options, const std::string& program) {
   if (options.cell.empty()) throw std::invalid_argument("CELL: the output directory of a run is required");
+  if (options.force && options.out.empty())
+    throw std::invalid_argument("--force: takes away what is in --out, which is not given");
   RepeatedRun run{program, options.cell, options.out, {}, options.force, {}};
   for (const auto& [name, value] : options.files)
     if (!value.empty()) run.files.emplace(name, value);

@@ -22,8 +22,8 @@ std::string read_choice(const StoredPartition& partition);
 // Whether bodies were numbered by a file, without which nobody can split them again.
 bool has_order_of_file(const StoredPartition& partition);
 
-// Throws std::invalid_argument with one line: a body order that was a file's, an algorithm that is none of ours, a parameter that is missing,
-// of another type or outside its range.
+// Throws std::invalid_argument with one line: a body order that was a file's, an algorithm that is none of
+// ours, a parameter that is missing, of another type or outside its range.
 SplitSetup read_split_setup(const StoredPartition& partition);
 
 // Its refiner alone; the same errors.

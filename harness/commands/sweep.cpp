@@ -1,4 +1,5 @@
-// cleave sweep: a campaign of many runs from one file, each in a process of its own; given again, it goes on where it was.
+// cleave sweep: a campaign of many runs from one file, each in a process of its own; given again, it goes on
+// where it was.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -73,7 +74,14 @@ void check_merge(const Given& given, const SweepOptions& options) {
   if (!given.merge) return;
   if (options.shards > 1)
     throw std::invalid_argument("--merge: puts the indexes of all shares into one; leave out --shard");
-  for (const auto& [name, is_given] : {std::pair("--force", given.force), {"--dry-run", given.dry_run}})
+  const Given none;
+  for (const auto& [name, is_given] : {std::pair("--force", given.force),
+                                       {"--dry-run", given.dry_run},
+                                       {"--keep-failed", given.keep_failed},
+                                       {"--jobs", given.jobs != none.jobs},
+                                       {"--pin", given.pin != none.pin},
+                                       {"--cell-seconds", !given.cell_seconds.empty()},
+                                       {"--cell-memory-gb", !given.cell_memory_gb.empty()}})
     if (is_given) throw std::invalid_argument(std::string("--merge: runs nothing; leave out ") + name);
 }
 

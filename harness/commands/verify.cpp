@@ -26,7 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Nothing vouches for it but the other files of its directory. A collected table may have the name, but no manifest beside it.
+// Nothing vouches for it but the other files of its directory. A collected table may have the name, but no
+// manifest beside it.
 bool is_file_of_run(const fs::path& path) {
   std::error_code none;
   const fs::path name = path.filename();
@@ -58,8 +59,8 @@ struct CompleteRun {
   std::map<std::string, std::string> files;  // RepeatedRun::files
 };
 
-// Complete runs below a directory, at most so many, evenly spread over their names: in a campaign these are fingerprints of
-// options, so that which are taken is as good as chance and always the same.
+// Complete runs below a directory, at most so many, evenly spread over their names: in a campaign these are
+// fingerprints of options, so that which are taken is as good as chance and always the same.
 std::vector<CompleteRun> sample_of_runs(const std::string& path, int most, const Calibrated& by) {
   std::vector<CompleteRun> runs;
   visit_cells(find_measured_cells(std::span(&path, 1)),

@@ -26,9 +26,12 @@ using Rows = std::map<std::string, std::vector<IndexRow>>;  // by cell
 
 // Which share of how many a directory holds, by its name; all of it otherwise.
 std::pair<int, int> share_of(const fs::path& out, const fs::path& share) {
-  int shard = 1, shards = 1;
-  if (share != out) std::sscanf(share.filename().c_str(), "%dof%d", &shard, &shards);
-  return {std::max(1, shard), std::max(1, shards)};
+  if (share == out) return {1, 1};
+  const std::string name = share.filename().string(), option = share.string() + ": share I of N, IofN";
+  const std::size_t of = name.find("of");
+  if (of == std::string::npos) throw std::invalid_argument(share.string() + " is no share, allowed: IofN");
+  const int shards = parse_integer(option, name.substr(of + 2), {1, kMostCells});
+  return {parse_integer(option, name.substr(0, of), {1, static_cast<double>(shards)}), shards};
 }
 
 // Pending, as the spec of a share lists them.
@@ -79,7 +82,8 @@ std::vector<std::string> others_beside_index(const fs::path& out) {
 }
 
 void read_share(const fs::path& out, const fs::path& share, Rows& rows, CheckList& list) {
-  // One that was killed leaves its lock, a share also where other shares have done its cells since. What is to do is pending.
+  // One that was killed leaves its lock, a share also where other shares have done its cells since. What is
+  // to do is pending.
   const std::vector<std::string> others =
       share == out ? others_beside_index(out) : std::vector<std::string>{kLockFile};
   if (!check_files(share, {kIndexFile, kSpecFile}, others, list)) return;

@@ -53,7 +53,8 @@ fs::path problem_path(const fs::path& directory, const std::string& name) {
   return fs::exists(name, error) ? fs::path(name) : fs::path();
 }
 
-// The model that a replay gave to its problems; empty: as recorded. A name that is none is told among the options.
+// The model that a replay gave to its problems; empty: as recorded. A name that is none is told among the
+// options.
 std::string replayed_friction(const StoredManifest& manifest) {
   const std::string name = manifest.command == "replay" ? manifest.option("friction") : "";
   return std::ranges::count(recorded_friction_models(), name) > 0 ? name : "";

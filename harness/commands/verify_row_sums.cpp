@@ -127,8 +127,8 @@ class RowAlone {
       require(is_full ? unknowns == most : unknowns <= most, "interface_unknowns",
               (is_full ? "" : "at most ") + number_text(most));
     }
-    // The solver's cover is a least one where the cut pairs form a bipartite graph, the counted one is greedy. An analysis
-    // that is kept keeps its cover, of a step that had other cut pairs.
+    // The solver's cover is a least one where the cut pairs form a bipartite graph, the counted one is
+    // greedy. An analysis that is kept keeps its cover, of a step that had other cut pairs.
     if (text("kernel") == "schur-bodies" && text("reuse_analysis") != "1" && number("session") != 1) {
       const double most = 6 * number("interface_cover_bodies");
       require(unknowns <= most && std::fmod(unknowns, 6) == 0 && (!is_full || (unknowns > 0) == (most > 0)),

@@ -8,7 +8,8 @@
 
 namespace cleave {
 
-// Every cell reads as what its column holds; without that no other check of the rows is made. Returns whether so.
+// Every cell reads as what its column holds; without that no other check of the rows is made. Returns whether
+// so.
 bool check_cells(const StepsTable& table, const std::string& subject, CheckList& list);
 
 // Sums, orders and what a status implies, row by row.

@@ -49,8 +49,8 @@ void append_once(const std::string& option, const std::string& item, Algorithm a
                  std::vector<Algorithm>& list);
 
 // Reads a list: items as above, none twice, and where the kind has them the keywords
-//     all     every algorithm of this build that needs no more than is given; what is left out goes to `left_out`, in
-//             words. Options leave out partitioners too that the run's solvers cannot use
+//     all     every algorithm of this build that needs no more than is given; what is left out goes to
+//             `left_out`, in words. Options leave out partitioners too that the run's solvers cannot use
 //     paper   those of Liu & Andrews 2022
 std::vector<Algorithm> read_list(const std::string& option, const std::string& text,
                                  const CommonValues& common, std::vector<std::string>* left_out = nullptr);
@@ -81,8 +81,8 @@ const SceneEntry& scene_row(const Algorithm& scene);
 // Whether the scene puts bodies into groups.
 bool names_groups(const Algorithm& scene);
 
-// Throws std::invalid_argument for an unknown name. context: see ode_baselines.h; must outlive the solver. ODE's
-// own solvers cannot be stopped.
+// Throws std::invalid_argument for an unknown name. context: see ode_baselines.h; must outlive the solver.
+// ODE's own solvers cannot be stopped.
 std::unique_ptr<StepSolver> make_solver(const Algorithm& solver, const SolveOptions& options,
                                         const StepContext& context);
 

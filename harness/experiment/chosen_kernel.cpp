@@ -10,7 +10,8 @@
 namespace cleave {
 namespace {
 
-// Of the kernels that can be chosen all have the same parameters, but for the arity of a tree, which partitioner auto has made.
+// Of the kernels that can be chosen all have the same parameters, but for the arity of a tree, which
+// partitioner auto has made.
 std::vector<Parameter> kernel_parameters() {
   return find_row(kernel_table(), cost_kernel_names().front())->parameters;
 }

@@ -1,11 +1,12 @@
 // Kernel `chosen`: the one for which the parts were chosen.
 //
-// pivot:chosen, newton:chosen, interior-point:chosen and auto:chosen are named as any other strategy:kernel, but whoever
-// splits the bodies says which kernel runs (Parts::kernel): partitioner auto, which models the time of one, or with
-// cost-kernel `any` of every kernel of cost_kernel_names. Parts that were chosen for no kernel are refused.
+// pivot:chosen, newton:chosen, interior-point:chosen and auto:chosen are named as any other strategy:kernel,
+// but whoever splits the bodies says which kernel runs (Parts::kernel): partitioner auto, which models the
+// time of one, or with cost-kernel `any` of every kernel of cost_kernel_names. Parts that were chosen for no
+// kernel are refused.
 //
-// A solve is, to the byte, that of strategy:KERNEL on these parts. Where the kernel is another than in the solve before,
-// nothing of that one is carried over, in a session neither.
+// A solve is, to the byte, that of strategy:KERNEL on these parts. Where the kernel is another than in the
+// solve before, nothing of that one is carried over, in a session neither.
 #pragma once
 
 #include <memory>

@@ -63,6 +63,7 @@ double median(const Items& items, Value value) {
   return value(items[median_index(items, value)]);
 }
 
+// Of repeats that all have parts.
 template <class Repeats>
 void set_split(const Repeats& repeats, StepRecord& row) {
   const Split& split = *repeats.front().split;
@@ -133,6 +134,7 @@ Combination::Combination(const Algorithm& partitioner, const Algorithm& refiner,
       solve_options_{.threads = options.threads,
                      .session = options.session,
                      .stop = stop,
+                     .models_workers = true,
                      .dispatch = dispatch_cost(),
                      .memory_limit_bytes = options.memory_limit_bytes},
       context_(&context),
@@ -235,7 +237,9 @@ Outcome Combination::measure(const StepProblem& problem, StepRecord& row) {
 
   set_names(row);
   row.repeat_count = static_cast<int>(repeats.size());
-  if (repeats.front().split) set_split(repeats, row);
+  // Of repeats that split, one that found no memory is the last, and may have no parts.
+  if (repeats.front().split)
+    set_split(std::span(repeats).first(repeats.size() - (repeats.back().split ? 0 : 1)), row);
   if (chosen.split) describe_split(*chosen.split, chosen.outcome);
   set_outcome(chosen.outcome, row);
   set_verdict(problem, chosen.outcome, row);

@@ -55,8 +55,8 @@ struct Outcome {
 class Combination {
  public:
   // Where the solver ignores parts partitioner and refiner are not made. context: what solvers that are ODE
-  // itself read the step from, and partitioners the positions. stop, where given: once true no solve begins and
-  // the one at hand ends with Stopped, out of every function below. Both must outlive the combination.
+  // itself read the step from, and partitioners the positions. stop, where given: once true no solve begins
+  // and the one at hand ends with Stopped, out of every function below. Both must outlive the combination.
   Combination(const Algorithm& partitioner, const Algorithm& refiner, const Algorithm& solver,
               const RunOptions& options, const StepContext& context, const std::atomic<bool>* stop = nullptr);
 
@@ -72,7 +72,8 @@ class Combination {
   // this step makes the outcome `refused`, a lack of memory `out_of_memory`; the next solve begins afresh.
   Outcome solve(const StepProblem& problem, int step);
 
-  // Splits without solving, for what the partition of the next step is made from. Does nothing where every step is split anew.
+  // Splits without solving, for what the partition of the next step is made from. Does nothing where every
+  // step is split anew.
   void follow(const StepProblem& problem, int step);
 
   // Splits and solves options.repeats times from the problem's warm start, at the row's step, and fills the
@@ -121,8 +122,8 @@ std::vector<CombinationName> combination_names(const RunOptions& options);
 std::vector<Outcome> measure_all(std::span<Combination> combinations, const StepProblem& problem, int turn,
                                  std::span<StepRecord> rows);
 
-// What advances a world knows no step before and no numbers but the scene's, so that the world goes the same way whatever
-// combinations remember and split by.
+// What advances a world knows no step before and no numbers but the scene's, so that the world goes the same
+// way whatever combinations remember and split by.
 RunOptions without_history(RunOptions options);
 
 // The solver of --advance. Where it needs parts it gets those of the run's first partitioner and refiner.

@@ -22,9 +22,10 @@ CostFeatures features_of(const CostSample& sample, double active_share) {
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using Vector = Eigen::VectorXd;
 
-// The x of least |A x - b|, summed: a few steps that are like no others do not draw it to themselves, as they do where squares
-// are summed. Squares are weighed by 1 / |A x - b| of the x before, again and again (Schlossmacher, Journal of the American
-// Statistical Association 68, 1973). solve(A, b): the x of least squares.
+// The x of least |A x - b|, summed: a few steps that are like no others do not draw it to themselves, as they
+// do where squares are summed. Squares are weighed by 1 / |A x - b| of the x before, again and again
+// (Schlossmacher, Journal of the American Statistical Association 68, 1973). solve(A, b): the x of least
+// squares.
 template <class Solve>
 Vector least_absolute_error(const Matrix& a, const Vector& b, const Solve& solve) {
   constexpr int kFits = 30;
@@ -92,7 +93,8 @@ void fit_group(std::span<const CostSample> samples, std::span<const std::array<d
   for (std::size_t i = 0; i < terms.size(); ++i) cost.cost[terms[i]] = fitted[i];
 }
 
-// Half of the solves take more than modelled and half of them less: what is so of the stages is not of their sum.
+// Half of the solves take more than modelled and half of them less: what is so of the stages is not of their
+// sum.
 void scale_to_whole(std::span<const CostSample> samples,
                     std::span<const std::array<double, kCostTerms>> units, KernelCost& cost) {
   std::vector<double> ratios;

@@ -1,5 +1,5 @@
-// Tables of steps that earlier programs wrote. A schema gains columns at its end only, so that a table of the same schema has
-// the first columns of this program.
+// Tables of steps that earlier programs wrote. A schema gains columns at its end only, so that a table of the
+// same schema has the first columns of this program.
 #pragma once
 
 #include <cstddef>

@@ -27,6 +27,19 @@ const Parameter& friction_force_n() {
   return parameter;
 }
 
+const Parameter& bound_sweeps() {
+  static const Parameter parameter{.name = "bound-sweeps",
+                                   .kind = Parameter::Kind::integer,
+                                   .default_value = std::to_string(kBoundSweeps),
+                                   .range = {0, 10000},
+                                   .help = "Gauss-Seidel sweeps that predict the bounds of friction"};
+  return parameter;
+}
+
+void set_predicted_bounds(const ExtractOptions& options, StepProblem& problem) {
+  predict_friction_bounds(problem, options.bound_sweeps);
+}
+
 }  // namespace
 
 std::span<const FrictionModelEntry> friction_models() {
@@ -38,20 +51,20 @@ std::span<const FrictionModelEntry> friction_models() {
         {friction_force_n()}},
        FrictionModel::constant},
       {{"box",
-        "bound = mu * normal impulse predicted by 5 Gauss-Seidel sweeps, then frozen",
+        "bound = mu * normal impulse predicted by bound-sweeps of Gauss-Seidel, then frozen",
         "pyramid of the ODE manual (dContactApprox1) with its bounds frozen",
-        {mu()}},
+        {mu(), bound_sweeps()}},
        FrictionModel::box,
        ContactSet::box,
-       predict_friction_bounds,
+       set_predicted_bounds,
        true},
       {{"box-converged",
         "bound iterated to mu * normal impulse of the solution",
         "fixed point as in Kaufman et al., Staggered Projections, ACM TOG 27(5), 2008",
-        {mu()}},
+        {mu(), bound_sweeps()}},
        FrictionModel::box_converged,
        ContactSet::box,
-       predict_friction_bounds},
+       set_predicted_bounds},
       {{"cone",
         "|friction| <= mu * normal impulse, as a convex problem: what slides lifts off at mu times its speed",
         "Anitescu, Optimization-based simulation of nonsmooth rigid multibody dynamics, Math. Program. 105, "
@@ -59,7 +72,7 @@ std::span<const FrictionModelEntry> friction_models() {
         {mu()}},
        FrictionModel::cone,
        ContactSet::cone,
-       set_cones,
+       [](const ExtractOptions&, StepProblem& problem) { set_cones(problem); },
        true},
       {{"coulomb",
         "|friction| <= mu * normal impulse, against the sliding direction: Coulomb's law, not convex",
@@ -67,7 +80,7 @@ std::span<const FrictionModelEntry> friction_models() {
         {mu()}},
        FrictionModel::coulomb,
        ContactSet::coulomb,
-       set_coulomb,
+       [](const ExtractOptions&, StepProblem& problem) { set_coulomb(problem); },
        true},
   };
   return table;

@@ -8,8 +8,8 @@
 //   coulomb        Coulomb's law
 //
 // The bound of a box is the same on both tangents, so a box is up to sqrt(2) too strong between them.
-// extract() builds the rows; each model's file sets what rows with friction_coefficient > 0 may carry and leaves
-// all others alone.
+// extract() builds the rows; each model's file sets what rows with friction_coefficient > 0 may carry and
+// leaves all others alone.
 #pragma once
 
 #include <span>
@@ -26,7 +26,7 @@ struct FrictionModelEntry : AlgorithmEntry {
   FrictionModel model;
   ContactSet contact_set = ContactSet::box;  // of the contacts whose friction rows have a coefficient
   // What extraction leaves to be set on every step; null: nothing.
-  void (*set)(StepProblem& problem) = nullptr;
+  void (*set)(const ExtractOptions& options, StepProblem& problem) = nullptr;
   bool of_recorded = false;  // `replay --friction` can give it to the contacts of any problem file
 };
 
@@ -39,7 +39,8 @@ const FrictionModelEntry& friction_model(FrictionModel model);
 // The names that `replay --friction` takes.
 std::vector<std::string> recorded_friction_models();
 
-// Whether what a friction row may carry is a box whose bound stands for mu times its contact's normal impulse.
+// Whether what a friction row may carry is a box whose bound stands for mu times its contact's normal
+// impulse.
 inline bool has_frozen_bound(const StepProblem& problem, int row) {
   if (!(problem.friction_coefficient[row] > 0)) return false;
   return problem.contact_set.empty() || problem.contact_set[problem.friction_row[row]] == ContactSet::box;

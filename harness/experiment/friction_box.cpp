@@ -16,7 +16,7 @@ double clamp_impulse(const StepProblem& problem, int row, double impulse, std::s
 }
 
 // The impulses after a few Gauss-Seidel sweeps in which friction bounds move with the normal impulses.
-std::vector<double> predicted_impulse(const StepProblem& problem) {
+std::vector<double> predicted_impulse(const StepProblem& problem, int sweeps) {
   PreparedStep step;
   step.prepare(problem);
   std::vector<double> impulse(problem.row_count(), 0.0), velocity(problem.free_velocity);
@@ -27,8 +27,7 @@ std::vector<double> predicted_impulse(const StepProblem& problem) {
     return clamp_impulse(problem, r, old - w / step.diagonal()[r], impulse);
   };
   gauss_seidel_sweep(step, OrderedSlack{}, start_warm, impulse, velocity);
-  for (int s = 0; s < kPredictionSweeps; ++s)
-    gauss_seidel_sweep(step, OrderedSlack{}, relax, impulse, velocity);
+  for (int s = 0; s < sweeps; ++s) gauss_seidel_sweep(step, OrderedSlack{}, relax, impulse, velocity);
   return impulse;
 }
 
@@ -46,8 +45,8 @@ void set_coulomb_bounds(std::span<const double> impulse, StepProblem& problem) {
   }
 }
 
-void predict_friction_bounds(StepProblem& problem) {
-  set_coulomb_bounds(predicted_impulse(problem), problem);
+void predict_friction_bounds(StepProblem& problem, int sweeps) {
+  set_coulomb_bounds(predicted_impulse(problem, sweeps), problem);
 }
 
 }  // namespace cleave

@@ -65,13 +65,15 @@ StepProblem with_static_bodies(const StepProblem& problem, std::span<const char>
   return without_rows(changed, std::move(gone));
 }
 
-std::vector<char> contacts_behind(const StepProblem& problem, int most) {
-  std::map<std::pair<int, int>, int> contacts;
+std::vector<char> contacts_behind(const StepProblem& problem, std::span<const ContactPoint> contacts,
+                                  int most) {
+  std::map<std::pair<int, int>, int> of_geoms;
   std::vector<char> behind(problem.rhs.size(), 0);
+  std::size_t next = 0;
   for (int row = 0; row < problem.row_count(); ++row) {
     if (problem.row_kind[row] != RowKind::normal) continue;
-    const int a = problem.row_body[2 * std::size_t(row)], b = problem.row_body[2 * std::size_t(row) + 1];
-    behind[row] = ++contacts[std::minmax(a, b)] > most;
+    const ContactPoint& contact = contacts[next++];
+    behind[row] = ++of_geoms[std::minmax(contact.geom_a, contact.geom_b)] > most;
   }
   return behind;
 }

@@ -178,7 +178,8 @@ SolveSummary ModelPlanner::solve_pass(StepSolver& solver, const StepProblem& pro
                                       Solution& solution) {
   if (std::ranges::count(plan_, RowPlan::solved) == problem.row_count())
     return solver.solve(problem, parts, solution);
-  // Not the time from the solver's start to its end: that has in it what the solver does for its model of workers.
+  // Not the time from the solver's start to its end: that has in it what the solver does for its model of
+  // workers.
   Stopwatch watch;
   reduce(problem);
   keep_rows(solution.impulse, is_solved_, found_.impulse);

@@ -98,14 +98,14 @@ void ModelWatch::watch(const ObservedStep& step) {
   watch_pairs(step, *solution);
   watch_bodies(step, *solution);
   watch_cone(step.problem, *solution);
-  keep_sample(step.problem);
+  keep_sample(step);
   ++steps_;
 }
 
 void ModelWatch::watch_pairs(const ObservedStep& step, const Solution& solution) {
   const StepProblem& problem = step.problem;
   const double unloaded = kUnloaded * largest_of(solution.impulse);
-  std::map<Pair, int> contacts;
+  const std::vector<char> at_cap = contacts_behind(problem, step.context.contacts, options_.contact_cap - 1);
   for (int row = 0; row < problem.row_count(); ++row) {
     if (problem.row_kind[row] == RowKind::bilateral) continue;
     PairRecord& pair = pairs_[pair_of(problem, row)];
@@ -113,11 +113,11 @@ void ModelWatch::watch_pairs(const ObservedStep& step, const Solution& solution)
     const bool is_loaded = std::abs(impulse) > unloaded;
     pair.touches |= is_loaded;
     if (problem.row_kind[row] == RowKind::normal) {
-      pair.reached_cap |= ++contacts[pair_of(problem, row)] >= options_.contact_cap;
+      pair.reached_cap |= at_cap[row] != 0;
     } else {
       pair.has_friction = true;
       pair.has_loaded_friction |= is_loaded;
-      pair.was_at_bound |= is_at_bound(problem, row, solution.impulse);
+      pair.was_at_bound |= is_loaded && is_at_bound(problem, row, solution.impulse);
     }
   }
 }
@@ -146,22 +146,23 @@ void ModelWatch::watch_cone(const StepProblem& problem, const Solution& solution
   }
 }
 
-void ModelWatch::keep_sample(const StepProblem& problem) {
+void ModelWatch::keep_sample(const ObservedStep& step) {
   if (steps_ % stride_ != 0) return;
-  samples_.push_back({problem, steps_});
+  const int half_cap = (options_.contact_cap + 1) / 2;
+  samples_.push_back({step.problem, contacts_behind(step.problem, step.context.contacts, half_cap), steps_});
   if (static_cast<int>(samples_.size()) <= kMostSamples) return;
   stride_ *= 2;
   std::erase_if(samples_, [this](const Sample& sample) { return sample.number % stride_ != 0; });
 }
 
-// change: of a step problem into what it would be.
+// change: of a sample into what its step problem would be.
 template <class Change>
 ModelFinding ModelWatch::try_out(ModelFinding finding, Change change) const {
   finding.steps = steps_;
   if (finding.found == 0) return finding;
   long rows = 0, gone = 0;
   for (const Sample& sample : samples_) {
-    const StepProblem changed = change(sample.problem);
+    const StepProblem changed = change(sample);
     const TimedSolve before = solve_timed(sample.problem), after = solve_timed(changed);
     if (!before.is_ok || !after.is_ok) continue;
     ++finding.samples;
@@ -185,7 +186,8 @@ ModelFinding ModelWatch::find_pairs(const char* name, const char* advice, RowKin
                                     Change change) const {
   ModelFinding finding = named(name, advice, 0, std::ssize(pairs_));
   for (const auto& [pair, record] : pairs_) finding.found += is_found(record);
-  return try_out(std::move(finding), [&](const StepProblem& problem) {
+  return try_out(std::move(finding), [&](const Sample& sample) {
+    const StepProblem& problem = sample.problem;
     std::vector<char> rows(problem.rhs.size(), 0);
     for (int row = 0; row < problem.row_count(); ++row)
       rows[row] = problem.row_kind[row] == kind && is_found(pairs_.at(pair_of(problem, row)));
@@ -198,21 +200,29 @@ ModelFinding ModelWatch::find_still_bodies() const {
   for (char& body : is_still) body = body == 0;
   return try_out(named("body_at_rest", "static geometry in their place would do",
                        std::ranges::count(is_still, 1), std::ssize(is_still)),
-                 [&](const StepProblem& problem) { return with_static_bodies(problem, is_still); });
+                 [&](const Sample& sample) { return with_static_bodies(sample.problem, is_still); });
+}
+
+ModelFinding ModelWatch::find_full_pairs() const {
+  const long full = std::ranges::count_if(pairs_, [](const auto& pair) { return pair.second.reached_cap; });
+  return try_out(
+      named("contact_cap", "tried is half of --contact-cap; where that changes little, fewer points do", full,
+            std::ssize(pairs_)),
+      [](const Sample& sample) { return without_rows(sample.problem, sample.behind_half_cap); });
 }
 
 ModelFinding ModelWatch::find_boxes_beyond_cones() const {
   return try_out(
       named("box_beyond_cone", "--friction cone or coulomb keeps friction to mu times the normal impulse",
             contacts_beyond_cone_, contacts_),
-      [](StepProblem problem) {
+      [](const Sample& sample) {
+        StepProblem problem = sample.problem;
         set_cones(problem);
         return problem;
       });
 }
 
 std::vector<ModelFinding> ModelWatch::findings() const {
-  const int half_cap = (options_.contact_cap + 1) / 2;
   return {find_pairs(
               "contact_apart", "--model auto leaves such rows out", RowKind::normal,
               [](const PairRecord& pair) { return !pair.touches; }, without_rows),
@@ -227,12 +237,7 @@ std::vector<ModelFinding> ModelWatch::findings() const {
               "friction_never_at_bound", "these contacts only stick: joints would do", RowKind::friction,
               [](const PairRecord& pair) { return pair.has_loaded_friction && !pair.was_at_bound; },
               with_bilateral_rows),
-          find_pairs(
-              "contact_cap", "tried is half of --contact-cap; where that changes little, fewer points do",
-              RowKind::normal, [](const PairRecord& pair) { return pair.reached_cap; },
-              [half_cap](const StepProblem& problem, const std::vector<char>&) {
-                return without_rows(problem, contacts_behind(problem, half_cap));
-              }),
+          find_full_pairs(),
           find_still_bodies(),
           find_boxes_beyond_cones()};
 }

@@ -1,16 +1,22 @@
-// cleave run --explain-model: what a run modelled that never mattered to it, and what it would have been without it.
+// cleave run --explain-model: what a run modelled that never mattered to it, and what it would have been
+// without it.
 //
 // The measured steps are watched, by pairs of bodies, as a contact point of one step has no name in the next:
 //
-//     contact_apart           pairs none of whose rows ever carried more than kUnloaded (a frozen box may hold by friction alone)
+//     contact_apart           pairs none of whose rows ever carried more than kUnloaded (a frozen box may
+//                             hold by friction alone)
 //     friction_unloaded       other pairs, none of whose friction rows ever did
-//     friction_never_at_bound pairs with loaded friction, no row of which came to its bound: a bilateral row would do
-//     contact_cap             pairs that had as many contact points as --contact-cap allows; what half as many do is tried
+//     friction_never_at_bound pairs with loaded friction, no row of which came to its bound: a bilateral row
+//                             would do
+//     contact_cap             pairs that had as many contact points as --contact-cap allows; what half as
+//                             many do is tried
 //     body_at_rest            bodies never kMoved from where they were first, and never faster than kFast
-//     box_beyond_cone         contacts of frozen boxes whose friction is beyond mu times the normal impulse; the cone is tried
+//     box_beyond_cone         contacts of frozen boxes whose friction is beyond mu times the normal impulse;
+//                             the cone is tried
 //
-// Of the watched steps some are kept, at least four where there are as many, evenly spaced. These are solved again as they were and as
-// they would be without what was found, by `exact` on one thread, each from its warm start.
+// Of the watched steps some are kept, at least four where there are as many, evenly spaced. These are solved
+// again as they were and as they would be without what was found, by `exact` on one thread, each from its
+// warm start.
 #pragma once
 
 #include <map>
@@ -56,19 +62,21 @@ class ModelWatch {
   };
   struct Sample {
     StepProblem problem;
-    int number;  // of the watched steps
+    std::vector<char> behind_half_cap;  // (m) of contacts that half the contact cap would leave out
+    int number;                         // of the watched steps
   };
 
   static Pair pair_of(const StepProblem& problem, int row);
   void watch_pairs(const ObservedStep& step, const Solution& solution);
   void watch_bodies(const ObservedStep& step, const Solution& solution);
   void watch_cone(const StepProblem& problem, const Solution& solution);
-  void keep_sample(const StepProblem& problem);
+  void keep_sample(const ObservedStep& step);
   template <class Change>
   ModelFinding try_out(ModelFinding finding, Change change) const;
   template <class IsFound, class Change>
   ModelFinding find_pairs(const char* name, const char* advice, RowKind kind, IsFound is_found,
                           Change change) const;
+  ModelFinding find_full_pairs() const;
   ModelFinding find_still_bodies() const;
   ModelFinding find_boxes_beyond_cones() const;
 

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::string_view kOfCost = "-cost";
 
-// What aims at the modelled time in the place of this name: itself, or the one that is called after it. Empty: nothing does.
+// What aims at the modelled time in the place of this name: itself, or the one that is called after it.
+// Empty: nothing does.
 std::string twin_of_cost(const std::string& name, const std::vector<std::string>& names) {
   const std::string twin = name.ends_with(kOfCost) ? name : name + std::string(kOfCost);
   return std::ranges::count(names, twin) > 0 ? twin : std::string();
@@ -111,7 +112,7 @@ void override_objective(RunOptions& options) {
   const auto aims_at_cost = [](const Algorithm& algorithm) { return algorithm.name.ends_with(kOfCost); };
   if (std::ranges::none_of(options.refiners, aims_at_cost) &&
       std::ranges::none_of(options.partitioners, aims_at_cost))
-    options.left_out.push_back(
+    options.notes.push_back(
         "--objective cost changes nothing: no partitioner or refiner of this run has an objective");
 }
 
@@ -121,7 +122,7 @@ void leave_out_of_all(const std::function<std::string(const Algorithm& partition
     if (std::ranges::count(options.of_all, partitioner.text) == 0) return false;
     const std::string reason = why(partitioner);
     if (!reason.empty())
-      options.left_out.push_back("--partitioner all leaves out " + partitioner.text + ", " + reason);
+      options.notes.push_back("--partitioner all leaves out " + partitioner.text + ", " + reason);
     return !reason.empty();
   });
 }
@@ -131,8 +132,9 @@ void leave_out_unable(const std::map<std::string, std::string>& given, RunOption
   if (found == given.end()) return;
   const std::vector<std::string> items = split_list(found->second);
   if (std::ranges::count(items, "all") == 0) return;
-  for (const Algorithm& partitioner : options.partitioners)
-    if (std::ranges::count(items, partitioner.text) == 0) options.of_all.push_back(partitioner.text);
+  for (const Algorithm& partitioner : options.partitioners)  // all stands for bare names
+    if (partitioner.text == partitioner.name && std::ranges::count(items, partitioner.text) == 0)
+      options.of_all.push_back(partitioner.text);
   leave_out_of_all([&](const Algorithm& partitioner) { return why_unable(partitioner, options); }, options);
 }
 

@@ -79,11 +79,33 @@ void check_is_read(const std::string& name, const std::vector<const Algorithm*>&
   reject(name, "would do nothing, as all that have it say their own: " + own);
 }
 
-void check_owned(const RunOptions& options, const std::set<std::string>& stored, bool with_world) {
-  std::vector<const Algorithm*> all, idle;
+std::vector<const Algorithm*> solvers_of(const RunOptions& options, bool with_world) {
+  std::vector<const Algorithm*> all;
   append(options.solvers, all);
   if (with_world && options.mode == RunMode::lockstep) all.push_back(&options.advance);
-  const bool splits = std::ranges::any_of(all, [](const Algorithm* solver) { return uses_parts(*solver); });
+  return all;
+}
+
+bool any_splits(const std::vector<const Algorithm*>& solvers) {
+  return std::ranges::any_of(solvers, [](const Algorithm* solver) { return uses_parts(*solver); });
+}
+
+// Campaigns may name partitioners for all their cells, and some cells have no use for them: told, not
+// refused.
+void tell_of_idle_partitions(const Given& given, const std::set<std::string>& stored, bool with_world,
+                             RunOptions& options) {
+  if (any_splits(solvers_of(options, with_world))) return;
+  std::vector<std::string> idle;
+  for (const char* name : {"partitioner", "refiner", "repartition", "body-order", "objective"})
+    if (given.contains(name) && !stored.contains(name)) idle.push_back(std::string("--") + name);
+  if (idle.empty()) return;
+  options.notes.push_back(joined(idle) + (idle.size() == 1 ? " changes" : " change") +
+                          " nothing: no solver of this run splits bodies");
+}
+
+void check_owned(const RunOptions& options, const std::set<std::string>& stored, bool with_world) {
+  std::vector<const Algorithm*> all = solvers_of(options, with_world), idle;
+  const bool splits = any_splits(all);
   append(options.partitioners, splits ? all : idle);
   append(options.refiners, splits ? all : idle);
   if (with_world) all.push_back(&options.friction);
@@ -116,6 +138,7 @@ void read_friction(RunOptions& options) {
   const Settings& settings = options.friction.settings;
   options.extract.friction = friction_model(options.friction.name).model;
   if (settings.has("mu")) options.extract.mu = settings.number("mu");
+  if (settings.has("bound-sweeps")) options.extract.bound_sweeps = settings.integer("bound-sweeps");
   if (settings.has("friction-force-n"))
     options.extract.friction_force_n = settings.number("friction-force-n");
   if (options.extract.friction != FrictionModel::constant) return;
@@ -169,6 +192,7 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given,
   read_friction(options);
   if (options.model == Model::automatic) check_reads_problem(options);
   check_owned(options, stored, true);
+  tell_of_idle_partitions(given, stored, true, options);
   if (options.mode == RunMode::separate) {
     exclude(given, "advance",
             "has a meaning only in lockstep: in --mode separate every combination advances its world");
@@ -179,6 +203,9 @@ RunOptions parse_run_options(const std::map<std::string, std::string>& given,
     reject("measure-every", std::to_string(options.measure_every) + " measures none of --steps " +
                                 std::to_string(options.steps) + ", allowed: 1 to " +
                                 std::to_string(options.steps));
+  if (options.skip > 0 && options.skip >= options.steps && !stored.contains("skip"))
+    reject("skip",
+           std::to_string(options.skip) + " leaves out all of --steps " + std::to_string(options.steps));
   options.memory_limit_bytes = memory_limit_bytes(options.memory_limit_gb);
   return options;
 }
@@ -193,6 +220,7 @@ RunOptions parse_solve_options(const std::map<std::string, std::string>& given,
   override_objective(options);
   read_session(given, options);
   check_owned(options, stored, false);
+  tell_of_idle_partitions(given, stored, false, options);
   if (const std::string ode = ode_solver_of(options); !ode.empty())
     reject("solver", ode + " is ODE's own and needs the world of a run; a problem file holds none");
   options.memory_limit_bytes = memory_limit_bytes(options.memory_limit_gb);

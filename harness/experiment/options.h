@@ -66,8 +66,8 @@ struct RunOptions {
   double match_tolerance = 0.05;
   bool skip_small_islands = false;
 
-  std::vector<std::string> left_out;  // what a keyword such as `all` does not name, in words
-  std::vector<std::string> of_all;    // partitioners that stand for `all`, not named beside it
+  std::vector<std::string> notes;   // what a keyword such as `all` does not name, what changes nothing
+  std::vector<std::string> of_all;  // partitioners that stand for `all`, not named beside it
 };
 
 // Which commands have an option.

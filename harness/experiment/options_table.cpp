@@ -98,7 +98,7 @@ OptionSpec algorithms(const Row& row, std::string placeholder, std::string help,
   return spec(
       row, Kind::text, std::move(placeholder), std::move(help),
       [=, name = std::string(row.name)](RunOptions& o, const std::string& value) {
-        member(o) = read_list(name, value, o.common, &o.left_out);
+        member(o) = read_list(name, value, o.common, &o.notes);
       },
       [=](const RunOptions& o) {
         std::vector<std::string> texts;

@@ -54,6 +54,7 @@ constexpr PlacedName kPlaced[] = {
     {Place::after_body_order, "coloring"},
     {Place::after_body_order, "coloring_seed"},
     {Place::at_end, "seeds"},
+    {Place::at_end, "bound_sweeps"},
 };
 
 std::ptrdiff_t rank_of(const std::string& name) {

@@ -1,8 +1,8 @@
 // Which column of steps.csv each parameter of an algorithm has, and where it stands.
 //
-// A column keeps its place for good: readers of older tables go by it. The parameters that have one are listed in
-// parameter_columns.cpp; whatever a registry adds later comes at the end of the table by itself, in the order of the
-// registries. Who then adds another column behind it lists it there first.
+// A column keeps its place for good: readers of older tables go by it. The parameters that have one are
+// listed in parameter_columns.cpp; whatever a registry adds later comes at the end of the table by itself, in
+// the order of the registries. Who then adds another column behind it lists it there first.
 #pragma once
 
 #include <span>

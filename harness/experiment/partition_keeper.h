@@ -1,16 +1,17 @@
 // The parts of one combination over consecutive steps (--repartition).
 //
-// A step is split anew (fresh) where there is no step before or its parts were never found, where bodies are gone (nobody knows
-// which), or where the rule of the option says so:
+// A step is split anew (fresh) where there is no step before or its parts were never found, where bodies are
+// gone (nobody knows which), or where the rule of the option says so:
 //   always     in every step.
 //   on-change  never for another reason.
 //   every:K    K steps after the last time.
-//   drift:X    where the parts as taken over cut more than (1 + X) s of the rows between bodies, s being the share that the last
-//              fresh parts cut in their own step.
-// Otherwise the parts of the step before are taken over: kept, to the byte, where there are as many bodies and
-// the same pairs of them are adjacent, whatever their weights are now; else repaired (partition/repair.h). Bodies that may move
-// are those with other adjacent bodies than before. No part gets more bodies than max-bodies and the largest of the last
-// fresh parts. A tree of parts is not repaired but made anew.
+//   drift:X    where the parts as taken over cut more than (1 + X) s of the rows between bodies, s being the
+//              share that the last fresh parts cut in their own step.
+// Otherwise the parts of the step before are taken over: kept, to the byte, where there are as many bodies
+// and the same pairs of them are adjacent, whatever their weights are now; else repaired
+// (partition/repair.h). Bodies that may move are those with other adjacent bodies than before. No part gets
+// more bodies than max-bodies and the largest of the last fresh parts. A tree of parts is not repaired but
+// made anew.
 //
 // Every call to run starts from what was remembered last, so that a step can be repeated.
 #pragma once

@@ -1,5 +1,5 @@
-// The body graph of a step problem, from its arrays alone and what its file holds too, so that it is the same for a live
-// and for a replayed step.
+// The body graph of a step problem, from its arrays alone and what its file holds too, so that it is the same
+// for a live and for a replayed step.
 #pragma once
 
 #include <optional>

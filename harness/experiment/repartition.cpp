@@ -29,10 +29,14 @@ Repartition read_repartition(const std::string& option, const std::string& text)
         "' is none of always, on-change, every:K with K in [1, inf), drift:X with X in [0, inf)");
   if (!has_number) return read;
   const std::string number = text.substr(colon + 1), named = option + ": " + word;
-  if (read.kind == Repartition::Kind::every)
+  // What means the same is written alike, as it is in run ids.
+  if (read.kind == Repartition::Kind::every) {
     read.steps = parse_integer(named, number, {.min = 1});
-  else
+    read.text = word + ":" + std::to_string(read.steps);
+  } else {
     read.drift = parse_number(named, number, {.min = 0});
+    read.text = word + ":" + number_text(read.drift);
+  }
   return read;
 }
 

@@ -14,7 +14,8 @@ struct Repartition {
   std::string text = "always";  // as given
 };
 
-// "always", "on-change", "every:K" with K >= 1 or "drift:X" with X >= 0. Throws std::invalid_argument naming the option.
+// "always", "on-change", "every:K" with K >= 1 or "drift:X" with X >= 0. Throws std::invalid_argument naming
+// the option.
 Repartition read_repartition(const std::string& option, const std::string& text);
 
 }  // namespace cleave

@@ -40,8 +40,8 @@ std::vector<std::string> scene_parameters(const Given& stored) {
   throw std::invalid_argument("option '" + name + "' is unknown" + nearest_question(name, known));
 }
 
-// The first item of an option's list that carries a content's hash, as file@0123456789abcdef: what a manifest knows is not where it
-// lay. Empty: there is none.
+// The first item of an option's list that carries a content's hash, as file@0123456789abcdef: what a manifest
+// knows is not where it lay. Empty: there is none.
 std::string item_of_file(const Given& options, const std::string& option) {
   for (const std::string& item : split_list(value_of(options, option)))
     if (!fingerprint_of(item).empty()) return item;
@@ -73,7 +73,7 @@ void drop_replaced(const Given& given, Given& stored) {
   if (any_of(given, {"stiffness", "damping"}) || any_of(stored, {"stiffness", "damping"}))
     drop(stored, {"erp", "cfm"});
   if (given.contains("solver")) drop(stored, {"strategy", "kernel"});
-  if (given.contains("refiner")) drop(stored, {"objective"});
+  if (any_of(given, {"partitioner", "refiner"})) drop(stored, {"objective"});
   if (given.contains("session")) drop(stored, {"repeats"});
   if (value_of(given.contains("mode") ? given : stored, "mode") == "separate")
     drop(stored, {"advance", "record-motion", "explain-model"});

@@ -81,8 +81,8 @@ void RestIslands::take(const StepProblem& problem, std::vector<char> is_at_rest)
   row_residuals(problem, impulse, is_at_rest_, velocity_);
 }
 
-// Nearly every island that moves is told by its first row, so that the judge need not look at all of it; where something rested in
-// the step before it does so at once.
+// Nearly every island that moves is told by its first row, so that the judge need not look at all of it;
+// where something rested in the step before it does so at once.
 const std::vector<char>& RestIslands::find(const StepProblem& problem) {
   velocity_ = problem.free_velocity;
   join_bodies(problem);

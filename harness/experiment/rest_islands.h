@@ -1,5 +1,5 @@
-// Islands at rest: bodies that rows join, on which the impulses of the step before still solve every row, as the judge
-// (solver/residual.h) finds.
+// Islands at rest: bodies that rows join, on which the impulses of the step before still solve every row, as
+// the judge (solver/residual.h) finds.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,8 @@
 
 namespace cleave {
 
-// The residual that an island at rest may have: what solvers aim at (SolveOptions) times max(1, largest |entry| of v0), m/s.
+// The residual that an island at rest may have: what solvers aim at (SolveOptions) times max(1, largest
+// |entry| of v0), m/s.
 double rest_limit_m_per_s(const StepProblem& problem);
 
 // Keeps its scratch from one problem to the next.

@@ -8,8 +8,9 @@
 
 namespace cleave {
 
-// is_kept: (m). Of a contact whose normal row goes the friction rows have to go too. new_row: (m) a row's number in `reduced`, -1 of those
-// that went. Allocates nothing where `reduced` and new_row have held as much before.
+// is_kept: (m). Of a contact whose normal row goes the friction rows have to go too. new_row: (m) a row's
+// number in `reduced`, -1 of those that went. Allocates nothing where `reduced` and new_row have held as much
+// before.
 void copy_rows(const StepProblem& problem, std::span<const char> is_kept, StepProblem& reduced,
                std::vector<int>& new_row);
 

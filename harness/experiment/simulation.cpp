@@ -167,7 +167,7 @@ long long Simulation::total_steps() const {
 // What friction rows may carry is fixed before anyone solves, so that all combinations have the same problem.
 void Simulation::set_friction(StepProblem& problem, Combination& advancing, int step) {
   const FrictionModelEntry& model = friction_model(options_.extract.friction);
-  if (model.set != nullptr) model.set(problem);
+  if (model.set != nullptr) model.set(options_.extract, problem);
   if (model.model != FrictionModel::box_converged) return;
   if (!advancing.converge_bounds(problem, step).converged) ++summary_.unconverged_bounds;
 }

@@ -44,9 +44,6 @@ class Simulation {
   // or when rows cannot be written.
   RunSummary run(const RowSink& write, const Progress& progress);
 
-  // What has been counted so far, also after an exception.
-  const RunSummary& summary() const { return summary_; }
-
  private:
   // The rows of one measured step and the solutions they stand for.
   struct Measured {

@@ -1,5 +1,5 @@
-// --skip-small-islands: the bodies of islands larger than max_bodies are split as if the small islands were not
-// there; then every small island becomes one part, in order of its lowest body.
+// --skip-small-islands: the bodies of islands larger than max_bodies are split as if the small islands were
+// not there; then every small island becomes one part, in order of its lowest body.
 #pragma once
 
 #include <vector>

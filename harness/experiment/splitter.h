@@ -38,8 +38,8 @@ struct Split {
 struct SplitSetup {
   Algorithm partitioner, refiner;
   bool skip_small_islands = false;
-  // Children of a set, by recursion; none: one level, as parts of a partitioner without max-bodies are (file, single), or
-  // the tree that it makes itself (auto).
+  // Children of a set, by recursion; none: one level, as parts of a partitioner without max-bodies are (file,
+  // single), or the tree that it makes itself (auto).
   std::optional<int> arity = {};
   BodyOrder order = {};     // numbers by which they are split
   std::string choice = {};  // that a partitioner made before and is to make again; empty: it chooses
@@ -50,8 +50,9 @@ std::optional<int> arity_of(const Algorithm& solver);
 
 class Splitter {
  public:
-  // Throws std::invalid_argument for --skip-small-islands with a partitioner that has no max-bodies, for a choice that
-  // the partitioner does not make, and for another order than the scene's with parts that come from files.
+  // Throws std::invalid_argument for --skip-small-islands with a partitioner that has no max-bodies, for a
+  // choice that the partitioner does not make, and for another order than the scene's with parts that come
+  // from files.
   explicit Splitter(const SplitSetup& setup);
 
   // step: which one of its run the problem is. Throws CannotSplit where the partitioner does.

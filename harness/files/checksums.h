@@ -1,5 +1,6 @@
-// The file `checksums` of an output directory: SHA-256 of every other file, a line each, as sha256sum writes it, so
-// that `sha256sum -c checksums` checks them too. Written last: a directory without it was not finished.
+// The file `checksums` of an output directory: SHA-256 of every other file, a line each, as sha256sum writes
+// it, so that `sha256sum -c checksums` checks them too. Written last: a directory without it was not
+// finished.
 #pragma once
 
 #include <filesystem>
@@ -22,8 +23,8 @@ std::string checksum_line(const std::string& digits, const std::string& name);
 // Of those of the names that are there. The same errors, and those of whole_file.h.
 void write_checksums(const std::filesystem::path& directory, const std::vector<std::string>& names);
 
-// Digits by name. Throws std::invalid_argument naming the file and the line that has another form, names a file
-// outside the directory, or names one for the second time.
+// Digits by name. Throws std::invalid_argument naming the file and the line that has another form, names a
+// file outside the directory, or names one for the second time.
 std::map<std::string, std::string> read_checksums(const std::filesystem::path& directory);
 
 // The same of a list under another name, of files beside it.

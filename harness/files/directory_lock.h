@@ -1,10 +1,12 @@
-// One writer a directory: whoever writes into an output directory holds the lock on the file cleave.lock in it.
+// One writer a directory: whoever writes into an output directory holds the lock on the file cleave.lock in
+// it.
 //
-// The lock is that of the system on the open file (F_OFD_SETLK), which ends with the process however that ends, is seen
-// by every process of the host and, on network disks that have locks, of other hosts. So a process that was killed
-// leaves a file that nobody holds, and no process number has to be looked up that may be another's by now. What the
-// file says (host, pid, start, command) is for the line that tells who holds it, and for disks whose locks do not
-// reach other hosts: a file of another host that nobody seems to hold cannot be checked from here.
+// The lock is that of the system on the open file (F_OFD_SETLK), which ends with the process however that
+// ends, is seen by every process of the host and, on network disks that have locks, of other hosts. So a
+// process that was killed leaves a file that nobody holds, and no process number has to be looked up that may
+// be another's by now. What the file says (host, pid, start, command) is for the line that tells who holds
+// it, and for disks whose locks do not reach other hosts: a file of another host that nobody seems to hold
+// cannot be checked from here.
 #pragma once
 
 #include <filesystem>
@@ -22,9 +24,9 @@ enum class LeftElsewhere {
 
 class DirectoryLock {
  public:
-  // Takes the lock at once or throws std::invalid_argument with one line: who holds it, or which file to delete where
-  // another host left it; std::runtime_error where the disk has no locks. What a killed process of this host left is
-  // taken over with a line on stderr. command: what the file says of us, "cleave run".
+  // Takes the lock at once or throws std::invalid_argument with one line: who holds it, or which file to
+  // delete where another host left it; std::runtime_error where the disk has no locks. What a killed process
+  // of this host left is taken over with a line on stderr. command: what the file says of us, "cleave run".
   DirectoryLock(const std::filesystem::path& directory, const std::string& command,
                 LeftElsewhere left_elsewhere = LeftElsewhere::refuse);
   // Deletes the file and gives the lock up.

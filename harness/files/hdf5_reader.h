@@ -6,9 +6,9 @@
 //     rocks.h5: solution/a/impulse cannot be read: the file is damaged
 // An array must have the element type asked for, in either byte order, or one that converts without loss:
 // 32-bit floats where 64-bit ones are asked for, and signed integers of 32 and 64 bits for any integers, each
-// of which must fit. Nothing else is converted. Links and data that lead out of the file are refused, and so are arrays
-// larger than the file can hold, before room is made for them. All the same a damaged file can crash the library
-// (isolated_read.h).
+// of which must fit. Nothing else is converted. Links and data that lead out of the file are refused, and so
+// are arrays larger than the file can hold, before room is made for them. All the same a damaged file can
+// crash the library (isolated_read.h).
 #pragma once
 
 #include <cstdint>

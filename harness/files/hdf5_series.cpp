@@ -10,8 +10,8 @@
 namespace cleave {
 namespace {
 
-// What is added at the end is never looked at again. Left to itself the library keeps up to a megabyte of written chunks for
-// every array. (It forgets what one array was told when the file changes its mode.)
+// What is added at the end is never looked at again. Left to itself the library keeps up to a megabyte of
+// written chunks for every array. (It forgets what one array was told when the file changes its mode.)
 void write_chunks_at_once(const Hdf5Handle& access) {
   constexpr std::size_t kSlots = 1, kBytes = 0;
   constexpr double kDropWrittenFirst = 1;

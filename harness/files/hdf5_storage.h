@@ -8,8 +8,9 @@
 
 namespace cleave {
 
-// Empty where all data are in the file itself, by filters that every reader has, and no more than it can hold; else one
-// line without the file: "storage of rhs = another file, allowed: this file". name: with its groups.
+// Empty where all data are in the file itself, by filters that every reader has, and no more than it can
+// hold; else one line without the file: "storage of rhs = another file, allowed: this file". name: with its
+// groups.
 std::string find_storage_error(const Hdf5Handle& dataset, const std::string& name, std::uintmax_t file_bytes);
 
 }  // namespace cleave

@@ -47,8 +47,8 @@ constexpr const Hdf5Element& hdf5_element(std::uint8_t) { return kHdf5Byte; }
 constexpr const Hdf5Element& hdf5_element(RowKind) { return kHdf5Byte; }
 constexpr const Hdf5Element& hdf5_element(ContactSet) { return kHdf5Byte; }
 
-// Types of a file. Ordinary are numbers whose every bit stands where the processor's have it, in either order of bytes, and texts
-// with an end and characters that there are.
+// Types of a file. Ordinary are numbers whose every bit stands where the processor's have it, in either order
+// of bytes, and texts with an end and characters that there are.
 bool is_ordinary(hid_t type);
 std::string type_text(hid_t type);  // "32-bit unsigned integer"
 bool matches(hid_t type, const Hdf5Element& element);
@@ -56,14 +56,16 @@ bool matches(hid_t type, const Hdf5Element& element);
 bool converts(hid_t type, const Hdf5Element& element);
 std::string allowed_types(const Hdf5Element& element);
 
-// Keeps the library from printing, errors are ours to tell, and from an exit handler, which would write once more what
-// could not be written and end in a crash. Call it before any other function of the library, even its version.
+// Keeps the library from printing, errors are ours to tell, and from an exit handler, which would write once
+// more what could not be written and end in a crash. Call it before any other function of the library, even
+// its version.
 inline void silence_hdf5() {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-// What there has to be before a file is made: several times what the library takes, which crashes where it finds less.
+// What there has to be before a file is made: several times what the library takes, which crashes where it
+// finds less.
 inline constexpr std::size_t kRoomToOpenHdf5 = std::size_t{4} << 20;
 
 // "(10, 12)"

@@ -69,8 +69,8 @@ void Hdf5Writer::write_attribute(const std::string& name, hid_t file_type, hid_t
   if (!attribute.valid() || H5Awrite(attribute.id(), memory_type, value) < 0) fail(name);
 }
 
-// A text of fixed length lies where the attribute does; one of variable length would lie in a heap of the file, in which
-// the library follows damaged pointers.
+// A text of fixed length lies where the attribute does; one of variable length would lie in a heap of the
+// file, in which the library follows damaged pointers.
 void Hdf5Writer::attribute(const std::string& name, const std::string& value) const {
   const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.id(), std::max<std::size_t>(value.size(), 1));

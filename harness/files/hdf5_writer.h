@@ -1,6 +1,6 @@
 // Writes arrays, attributes and groups into a new HDF5 file. Equal contents give equal bytes: no time is
-// kept. The file grows in memory and goes to disk as a whole (whole_file.h): the library, which does not get over a
-// failed write, never meets a full disk.
+// kept. The file grows in memory and goes to disk as a whole (whole_file.h): the library, which does not get
+// over a failed write, never meets a full disk.
 //
 // Errors are std::runtime_error of one line: "rocks.h5: jacobian cannot be written: No space left on device".
 #pragma once

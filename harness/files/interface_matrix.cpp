@@ -65,6 +65,9 @@ std::vector<MatrixEntry> interface_entries(const StepProblem& problem, const std
     if (!is_interface(problem, row, part_of_body)) inside.push_back(row);
   const int size = 6 * problem.body_count(), count = static_cast<int>(across.size());
   const Eigen::SimplicialLLT<SparseMatrix> factor(matrix_of(size, size, system_entries(problem, inside)));
+  if (factor.info() != Eigen::Success)
+    throw std::invalid_argument(
+        "--matrix: S needs a factor of the rows within parts, which are too stiff for one");
   std::vector<MatrixEntry> jacobian, entries;
   for (int c = 0; c < count; ++c)
     for (const MatrixEntry& entry : jacobian_entries(problem, across[c]))

@@ -53,7 +53,8 @@ std::size_t address_space_bytes() {
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-// In the child. Interrupts are taken as the parent takes them: where they end a run after the step at hand, its file is still read.
+// In the child. Interrupts are taken as the parent takes them: where they end a run after the step at hand,
+// its file is still read.
 void set_limits(const ReadLimits& limits) {
   set_limit(RLIMIT_CPU, static_cast<rlim_t>(limits.processor_s));
   if (const std::size_t used = address_space_bytes(); used > 0)

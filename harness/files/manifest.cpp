@@ -133,7 +133,8 @@ void Manifest::around(const std::function<WorkResult()>& work) {
   try {
     result = work();
   } catch (const std::exception& error) {
-    // What went wrong first is what the user has to know, also where the disk that is full takes no manifest either.
+    // What went wrong first is what the user has to know, also where the disk that is full takes no manifest
+    // either.
     try {
       write_end("failed", result, error.what());
     } catch (const std::exception&) {

@@ -48,7 +48,8 @@ class Manifest {
   Manifest(std::filesystem::path path, WorkDescription description);
 
   // Does the work between the two writings. When the work throws, the manifest says "failed" and why, and the
-  // exception goes on. Where a full disk does not take the second writing, "failed" alone stands in the first.
+  // exception goes on. Where a full disk does not take the second writing, "failed" alone stands in the
+  // first.
   void around(const std::function<WorkResult()>& work);
 
  private:

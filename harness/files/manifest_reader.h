@@ -34,8 +34,8 @@ struct StoredManifest {
   std::string option(const std::string& name) const;
 };
 
-// Throws std::invalid_argument with one line naming the file and what is wrong: not there, no JSON, another schema, a
-// member that is missing or of another form.
+// Throws std::invalid_argument with one line naming the file and what is wrong: not there, no JSON, another
+// schema, a member that is missing or of another form.
 StoredManifest read_manifest(const std::filesystem::path& path);
 
 }  // namespace cleave

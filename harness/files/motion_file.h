@@ -24,10 +24,11 @@
 //       ok                   (k,c) uint8; 1: solved and within the judge's limit
 //
 // Residuals and impulses keep 11 significant bits, which is plenty for a colour and halves their size. The
-// file grows every 16 steps under the name motion.h5.part and gets its own when the run ends, or is interrupted.
-// A run that was killed, or met a full disk, leaves motion.h5.part: the first 16 steps or more of it, if it got so far,
-// can be read in HDF5's SWMR mode (hdf5_series.h), as they can while the run goes on, and once it is renamed the viewer
-// shows them; its arrays may have more entries than `step` and measured/step, which count.
+// file grows every 16 steps under the name motion.h5.part and gets its own when the run ends, or is
+// interrupted. A run that was killed, or met a full disk, leaves motion.h5.part: the first 16 steps or more
+// of it, if it got so far, can be read in HDF5's SWMR mode (hdf5_series.h), as they can while the run goes
+// on, and once it is renamed the viewer shows them; its arrays may have more entries than `step` and
+// measured/step, which count.
 //
 // Size: about 17 bytes a body and step, and 1.5 to 2.5 more for every combination that measured it. 500 steps
 // of 600 boxes, 50 of them measured with 6 combinations, are 5.7 MB.
@@ -81,7 +82,8 @@ inline constexpr int kMostMotionBodies = 65535;  // body numbers and part ids ha
 
 class MotionFile {
  public:
-  // Creates the file, under its part name (whole_file.h). Throws std::runtime_error when it cannot be written, here and in the calls below.
+  // Creates the file, under its part name (whole_file.h). Throws std::runtime_error when it cannot be
+  // written, here and in the calls below.
   MotionFile(const std::filesystem::path& path, const MotionSetup& setup);
   ~MotionFile();
 

@@ -1,5 +1,5 @@
-// Plain values, arrays and texts in a row of bytes, to go from the process that reads a file to the one that uses it
-// (isolated_read.h). Both walk the same members in the same order.
+// Plain values, arrays and texts in a row of bytes, to go from the process that reads a file to the one that
+// uses it (isolated_read.h). Both walk the same members in the same order.
 #pragma once
 
 #include <cstring>

@@ -1,5 +1,5 @@
-// Surfaces of geoms (harness/base/shapes.h) as flat polygons, in world coordinates: boxes and convex bodies as they are, round
-// ones in steps of an angle, their corners on the true surface.
+// Surfaces of geoms (harness/base/shapes.h) as flat polygons, in world coordinates: boxes and convex bodies
+// as they are, round ones in steps of an angle, their corners on the true surface.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,6 @@
-// A recorded step problem in one HDF5 file (schemas "cleave-problem-1" and "-2"): all that a solver needs to solve the
-// step again elsewhere, where the bodies were, and solutions that were found. n bodies, m constraint rows.
+// A recorded step problem in one HDF5 file (schemas "cleave-problem-1" and "-2"): all that a solver needs to
+// solve the step again elsewhere, where the bodies were, and solutions that were found. n bodies, m
+// constraint rows.
 //
 // PROBLEM_FILES.md says what is in it, what may be left out and which types are read; a program of 30 lines
 // there writes one.
@@ -62,21 +63,22 @@ struct ProblemFile {
 
 // Throws std::invalid_argument with one line that names the file, what is wrong in it (dataset, index, value)
 // and what is allowed: not a readable HDF5 file, wrong schema, missing parts, wrong types or shapes, values
-// that are no problem (find_contents_error), contents that its own hashes do not bear out. Impulses, velocities and part
-// ids of one level are checked for type and shape only: whether they are right is for `cleave verify` to say. Damage of whatever kind
-// neither ends nor hangs the process: a child does the reading (isolated_read.h).
+// that are no problem (find_contents_error), contents that its own hashes do not bear out. Impulses,
+// velocities and part ids of one level are checked for type and shape only: whether they are right is for
+// `cleave verify` to say. Damage of whatever kind neither ends nor hangs the process: a child does the
+// reading (isolated_read.h).
 ProblemFile read_problem_file(const std::filesystem::path& path);
 
 // The same, with a line on stderr where the file carries no hashes.
 ProblemFile read_problem_file_aloud(const std::filesystem::path& path);
 
-// Whatever ends the program, a file of this name is whole (whole_file.h). Throws std::invalid_argument for a problem that
-// read_problem_file would refuse, and std::runtime_error naming the file and the reason when it cannot be
-// written.
+// Whatever ends the program, a file of this name is whole (whole_file.h). Throws std::invalid_argument for a
+// problem that read_problem_file would refuse, and std::runtime_error naming the file and the reason when it
+// cannot be written.
 void write_problem_file(const std::filesystem::path& path, const ProblemFile& file);
 
-// (n, 3) m, or empty where the file does not say where the bodies are: all positions are 0, which is what it means
-// to leave them out.
+// (n, 3) m, or empty where the file does not say where the bodies are: all positions are 0, which is what it
+// means to leave them out.
 std::vector<double> known_positions(const ProblemFile& file);
 
 // (n) groups of bodies, or empty where the file names none.

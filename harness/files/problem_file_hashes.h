@@ -1,5 +1,5 @@
-// What a problem file says of itself, so that a changed bit is noticed: three hashes over all that is read from it, and
-// a mark that they must be there.
+// What a problem file says of itself, so that a changed bit is noticed: three hashes over all that is read
+// from it, and a mark that they must be there.
 #pragma once
 
 #include <string>

@@ -16,8 +16,8 @@ struct PackedProblemFile {
 
 std::string pack(const PackedProblemFile& packed);
 
-// Throws std::invalid_argument, without a file name, where the bytes are not those of a whole problem file whose arrays
-// have the sizes that belong together. Allocates no more than the bytes hold.
+// Throws std::invalid_argument, without a file name, where the bytes are not those of a whole problem file
+// whose arrays have the sizes that belong together. Allocates no more than the bytes hold.
 PackedProblemFile unpack(std::string_view bytes);
 
 }  // namespace cleave

@@ -1,6 +1,7 @@
 // A recorded problem as a picture that ParaView and VTK read: an unstructured grid (VTK XML, .vtu) in text.
 //
-// Its cells are the polygons of all bodies and static geometry, then one vertex a contact, where it acts. Every cell has
+// Its cells are the polygons of all bodies and static geometry, then one vertex a contact, where it acts.
+// Every cell has
 //
 //     body                     index of the body; of a contact its first one; -1: static
 //     contact_row              index of the contact's normal row; -1: a polygon

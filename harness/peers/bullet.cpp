@@ -1,11 +1,14 @@
-// Solvers `bullet-dantzig`, `bullet-lemke` and `bullet-pgs`: the mixed complementarity solvers of Bullet 3 behind its
-// btMLCPSolverInterface, in double precision (libBulletDynamics-float64). They take the dense problem (dense_problem.h).
+// Solvers `bullet-dantzig`, `bullet-lemke` and `bullet-pgs`: the mixed complementarity solvers of Bullet 3
+// behind its btMLCPSolverInterface, in double precision (libBulletDynamics-float64). They take the dense
+// problem (dense_problem.h).
 //
-// - Dantzig's method is ODE's, after Baraff, "Fast contact force computation for nonpenetrating rigid bodies", SIGGRAPH 1994. Bullet
-//   asks whether the start, not the answer, is below 1000, so it starts from zero.
-// - Lemke's method after Lloyd, "Fast implementation of Lemke's algorithm for rigid body contact simulation", ICRA 2005: Bullet inverts
-//   A by Gauss-Jordan elimination without pivoting and pivots in a tableau of twice as many rows. It cannot take infinite bounds:
-//   1e5 N s stands for them, beyond which Bullet calls an impulse a failure. It reports success on answers that are none.
+// - Dantzig's method is ODE's, after Baraff, "Fast contact force computation for nonpenetrating rigid
+//   bodies", SIGGRAPH 1994. Bullet asks whether the start, not the answer, is below 1000, so it starts from
+//   zero.
+// - Lemke's method after Lloyd, "Fast implementation of Lemke's algorithm for rigid body contact simulation",
+//   ICRA 2005: Bullet inverts A by Gauss-Jordan elimination without pivoting and pivots in a tableau of twice
+//   as many rows. It cannot take infinite bounds: 1e5 N s stands for them, beyond which Bullet calls an
+//   impulse a failure. It reports success on answers that are none.
 // - Projected Gauss-Seidel over the nonzeros of A, from the warm start, a fixed number of sweeps.
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btLemkeSolver.h>

@@ -1,6 +1,6 @@
 // A step problem as Siconos knows it: contacts alone. Joints are eliminated, as their rows hold as equations:
 //
-//     A_jj lambda_j = g_j - A_jc lambda_c                                (A, g of dense_problem.h; j rows of joints, c of contacts)
+//     A_jj lambda_j = g_j - A_jc lambda_c        (A, g of dense_problem.h; j rows of joints, c of contacts)
 //     W = A_cc - A_cj A_jj^-1 A_jc,    q = A_cj A_jj^-1 g_j - g_c,       u = W lambda_c + q
 //
 // Without joints W is J M^-1 J^T + C and q is J v0 - b, to the last bit.
@@ -17,9 +17,9 @@ inline constexpr int kRowsOfContact = 3;  // a normal and two tangents
 
 class ContactForm {
  public:
-  // Throws std::invalid_argument with one line that names the row: what is neither the row of a joint without bounds nor of a
-  // contact of one normal row and two friction rows that follow it. So where there are no contacts, and where joints depend on
-  // each other and have no compliance.
+  // Throws std::invalid_argument with one line that names the row: what is neither the row of a joint without
+  // bounds nor of a contact of one normal row and two friction rows that follow it. So where there are no
+  // contacts, and where joints depend on each other and have no compliance.
   explicit ContactForm(const StepProblem& problem);
 
   int contact_count() const { return static_cast<int>(friction_coefficient.size()); }

@@ -1,12 +1,14 @@
-// Solvers `dart-dantzig` and `dart-pgs`: the boxed complementarity solvers of DART 6, called as its BoxedLcpConstraintSolver
-// calls them: rows padded to a multiple of four numbers (dPAD of ODE, from where both come).
+// Solvers `dart-dantzig` and `dart-pgs`: the boxed complementarity solvers of DART 6, called as its
+// BoxedLcpConstraintSolver calls them: rows padded to a multiple of four numbers (dPAD of ODE, from where
+// both come).
 //
-// - Dantzig's method after Baraff, SIGGRAPH 1994, from zero. DART falls back on projected Gauss-Seidel where it fails; here failure is
-//   failure.
-// - Projected Gauss-Seidel, `sweeps` iterations, from the warm start. Its tolerances are zero, so that it does all of them; with DART's
-//   1e-3 it would leave off early.
+// - Dantzig's method after Baraff, SIGGRAPH 1994, from zero. DART falls back on projected Gauss-Seidel where
+//   it fails; here failure is failure.
+// - Projected Gauss-Seidel, `sweeps` iterations, from the warm start. Its tolerances are zero, so that it
+//   does all of them; with DART's 1e-3 it would leave off early.
 //
-// Compiled for any x86-64 and with Eigen under its own name (CMakeLists.txt), as DART was: its classes hold matrices of Eigen.
+// Compiled for any x86-64 and with Eigen under its own name (CMakeLists.txt), as DART was: its classes hold
+// matrices of Eigen.
 #include <dart/constraint/DantzigBoxedLcpSolver.hpp>
 #include <dart/constraint/PgsBoxedLcpSolver.hpp>
 

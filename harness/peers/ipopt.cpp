@@ -1,11 +1,14 @@
-// Solver `ipopt`: Ipopt 3.11, a primal-dual interior-point method with a filter line search, on MUMPS (Wächter and Biegler, "On the
-// implementation of an interior-point filter line-search algorithm for large-scale nonlinear programming", Mathematical Programming 106,
-// 2006). The box problem as a sparse quadratic programme in x = (v, lambda):
+// Solver `ipopt`: Ipopt 3.11, a primal-dual interior-point method with a filter line search, on MUMPS
+// (Wächter and Biegler, "On the implementation of an interior-point filter line-search algorithm for
+// large-scale nonlinear programming", Mathematical Programming 106, 2006). The box problem as a sparse
+// quadratic programme in x = (v, lambda):
 //
-//     min  1/2 v^T M v + 1/2 lambda^T C lambda - b^T lambda    with  M (v - v0) - J^T lambda = 0,  lo <= lambda <= hi.
+//     min  1/2 v^T M v + 1/2 lambda^T C lambda - b^T lambda
+//     with  M (v - v0) - J^T lambda = 0,  lo <= lambda <= hi.
 //
-// Put v into the objective and it is the box quadratic programme of step_problem.h. Derivatives are said to be constant and bounds not
-// to be relaxed (Ipopt would widen them by 1e-8); everything else is as Ipopt ships.
+// Put v into the objective and it is the box quadratic programme of step_problem.h. Derivatives are said to
+// be constant and bounds not to be relaxed (Ipopt would widen them by 1e-8); everything else is as Ipopt
+// ships.
 #include <coin/IpStdCInterface.h>
 
 #include <algorithm>

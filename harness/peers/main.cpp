@@ -1,4 +1,5 @@
-// The program cleave_peers: cleave, with other people's solvers among the solvers. They are linked here alone.
+// The program cleave_peers: cleave, with other people's solvers among the solvers. They are linked here
+// alone.
 #include <stdexcept>
 
 #include "harness/peers/peer_table.h"

@@ -1,11 +1,13 @@
-// The program cleave_mujoco: steps a model of MuJoCo from where its bodies are, with the velocities (its qvel) that standard
-// input gives, and says how long that took and what came out, as one object of JSON. scripts/peers_mujoco writes the model from a problem file and reads this.
+// The program cleave_mujoco: steps a model of MuJoCo from where its bodies are, with the velocities (its
+// qvel) that standard input gives, and says how long that took and what came out, as one object of JSON.
+// scripts/peers_mujoco writes the model from a problem file and reads this.
 //
 //     cleave_mujoco MODEL.xml REPEATS STEPS < VELOCITIES
 //
-// REPEATS times the first step from that state (t_..._ms are medians), then STEPS - 1 steps more, each begun from the
-// accelerations of the one before (later_step_ms, a median); the first one knows none. t_constraint_ms is what
-// MuJoCo's own timer calls constraint: the solve, without collision and without the making of rows.
+// REPEATS times the first step from that state (t_..._ms are medians), then STEPS - 1 steps more, each begun
+// from the accelerations of the one before (later_step_ms, a median); the first one knows none.
+// t_constraint_ms is what MuJoCo's own timer calls constraint: the solve, without collision and without the
+// making of rows.
 #include <mujoco/mujoco.h>
 
 #include <algorithm>

@@ -1,7 +1,8 @@
-// What one peer, a solver of somebody else's library, is to this project: a function from a step problem to impulses.
+// What one peer, a solver of somebody else's library, is to this project: a function from a step problem to
+// impulses.
 //
-// It runs in a child process of its own (peer_solver.h), so it may crash, print, keep global state and take for ever. One
-// file a library, one row a solver in peer_table.cpp.
+// It runs in a child process of its own (peer_solver.h), so it may crash, print, keep global state and take
+// for ever. One file a library, one row a solver in peer_table.cpp.
 #pragma once
 
 #include <limits>
@@ -22,8 +23,8 @@ struct PeerAnswer {
   std::vector<double> impulse;                                 // (m) N s
 };
 
-// start: (m) impulses that a library may begin from; most of them begin from zero whatever they are given. settings: values
-// of the row's parameters.
+// start: (m) impulses that a library may begin from; most of them begin from zero whatever they are given.
+// settings: values of the row's parameters.
 using PeerFunction = PeerAnswer (*)(const StepProblem& problem, std::span<const double> start,
                                     const Settings& settings);
 

@@ -15,9 +15,9 @@ struct PeerEnd {
   PeerAnswer answer;
 };
 
-// timeout_s: wall time until the child is killed. Where stop comes true it is killed too, and Stopped thrown. What
-// the child prints is lost. A std::exception of `work` is crashed with its text, std::bad_alloc out_of_memory. Throws
-// std::bad_alloc where no child can be made.
+// timeout_s: wall time until the child is killed. Where stop comes true it is killed too, and Stopped thrown.
+// What the child prints is lost. A std::exception of `work` is crashed with its text, std::bad_alloc
+// out_of_memory. Throws std::bad_alloc where no child can be made.
 PeerEnd run_peer(const std::function<PeerAnswer()>& work, double timeout_s, const std::atomic<bool>* stop);
 
 }  // namespace cleave

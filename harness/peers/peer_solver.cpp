@@ -32,7 +32,8 @@ StageTimes times_of(double solve_ms) {
 
 }  // namespace
 
-// Asked where a set is no interval of a row: boxes that are turned, and what find_refusal looks at more closely.
+// Asked where a set is no interval of a row: boxes that are turned, and what find_refusal looks at more
+// closely.
 std::string PeerSolver::refuse_set(const StepProblem& problem) {
   const bool turned = std::ranges::any_of(problem.box_angle_rad, [](double angle) { return angle != 0; });
   return turned ? find_set_refusal("solver", name_, problem) : "";

@@ -1,13 +1,15 @@
-// A peer as an ordinary solver: it gets a child process of its own, for as long as it may take, and what comes back is judged.
+// A peer as an ordinary solver: it gets a child process of its own, for as long as it may take, and what
+// comes back is judged.
 //
-// - More than peer-max-rows rows, or contacts that obey another law than the peer knows: refused, before anything is formed.
+// - More than peer-max-rows rows, or contacts that obey another law than the peer knows: refused, before
+//   anything is formed.
 // - Longer than peer-timeout-s of wall time, forming its input included: the child is killed, timeout.
 // - Ended by a signal: crashed, with the signal's name. Without memory: out_of_memory.
-// - ok where the judge (residual.h) finds the impulses within the limit, whatever the library says of itself; else
-//   not_converged, or diverged where they are no numbers.
+// - ok where the judge (residual.h) finds the impulses within the limit, whatever the library says of itself;
+//   else not_converged, or diverged where they are no numbers.
 //
-// t_s is the library's call alone. What it is given, mostly a dense matrix, is formed outside of that time, as it is not the
-// library's doing, and so is what forking costs. Libraries run on one thread.
+// t_s is the library's call alone. What it is given, mostly a dense matrix, is formed outside of that time,
+// as it is not the library's doing, and so is what forking costs. Libraries run on one thread.
 #pragma once
 
 #include "harness/peers/peer.h"

@@ -1,5 +1,5 @@
-// The peers there are: rows that add_solvers (solver/registry.h) puts beside the solvers of this project. To add one: a
-// function in a file named after its library, and a row here.
+// The peers there are: rows that add_solvers (solver/registry.h) puts beside the solvers of this project. To
+// add one: a function in a file named after its library, and a row here.
 #pragma once
 
 #include <vector>

@@ -1,12 +1,14 @@
-// Solvers `siconos-nsgs` and `siconos-newton`: Coulomb's law by the nonsmooth Gauss-Seidel method and the semi-smooth Newton method
-// (Alart and Curnier) of Siconos 4.4, both on the local form
+// Solvers `siconos-nsgs` and `siconos-newton`: Coulomb's law by the nonsmooth Gauss-Seidel method and the
+// semi-smooth Newton method (Alart and Curnier) of Siconos 4.4, both on the local form
 //
-//     u = W r + q,   W = J M^-1 J^T + C,   q = J v0 - b,    r_n >= 0, u_n >= 0, r_n u_n = 0,   |r_t| <= mu r_n and, sliding,
-//     r_t = -mu r_n u_t / |u_t|   (Acary, Bremond and Huber, "On solving contact problems with Coulomb friction", 2018)
+//     u = W r + q,   W = J M^-1 J^T + C,   q = J v0 - b,
+//     r_n >= 0,  u_n >= 0,  r_n u_n = 0,   |r_t| <= mu r_n  and, sliding,  r_t = -mu r_n u_t / |u_t|
+//     (Acary, Bremond and Huber, "On solving contact problems with Coulomb friction", 2018)
 //
 // of the contacts, joints having been eliminated (contact_form.h).
 //
-// They are run to an error (siconos.h) of `peer-tolerance`. W goes over in blocks of 3x3 to the first, as triplets to the second.
+// They are run to an error (siconos.h) of `peer-tolerance`. W goes over in blocks of 3x3 to the first, as
+// triplets to the second.
 #include "harness/peers/siconos.h"
 
 #include <numerics/FrictionContactProblem.h>
@@ -83,8 +85,9 @@ std::unique_ptr<SolverOptions, DeleteOptions> make_options(int solver) {
   return std::unique_ptr<SolverOptions, DeleteOptions>(solver_options_create(solver));
 }
 
-// Siconos divides by the largest of |r|, |u| and a norm that it is given, and impulses of heavy bodies are far above |q|. With a
-// power of two above all of them, what it divides by is known and taken back without rounding.
+// Siconos divides by the largest of |r|, |u| and a norm that it is given, and impulses of heavy bodies are
+// far above |q|. With a power of two above all of them, what it divides by is known and taken back without
+// rounding.
 double error_over_q(LocalForm& form, std::vector<double> reaction) {
   const auto options = make_options(SICONOS_FRICTION_3D_NSGS);
   const double above_all = std::ldexp(1.0, 300), norm = form.norm_of_q();
@@ -94,8 +97,8 @@ double error_over_q(LocalForm& form, std::vector<double> reaction) {
   return error * above_all / (norm > 0 ? norm : 1.0);
 }
 
-// Its solvers stop in that other measure: they go on from where they stopped, with a smaller tolerance, until the error is
-// what was asked for or they give up.
+// Its solvers stop in that other measure: they go on from where they stopped, with a smaller tolerance, until
+// the error is what was asked for or they give up.
 void run_to_tolerance(int solver, LocalForm& form, const Settings& settings, std::vector<double>& reaction,
                       PeerAnswer& answer) {
   const double wanted = settings.number(parameters::peer_tolerance().name);

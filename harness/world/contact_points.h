@@ -23,8 +23,8 @@ struct ContactPoint {
 
 // All contact points of the present positions, sorted by (lower body, other body or -1, lower geom, other
 // geom, order of dCollide called with the lower geom first). At most contact_cap points a geom pair, in [1,
-// 65535], else std::invalid_argument; cap_hits (may be null) counts the pairs that reached it. Bodies
-// joined by a joint do not collide. Throws std::runtime_error for a contact or a geom that is not finite. Never call
+// 65535], else std::invalid_argument; cap_hits (may be null) counts the pairs that reached it. Bodies joined
+// by a joint do not collide. Throws std::runtime_error for a contact or a geom that is not finite. Never call
 // from two threads.
 std::vector<ContactPoint> find_contact_points(std::span<const dGeomID> geoms, int contact_cap, int* cap_hits);
 

@@ -23,19 +23,23 @@ namespace cleave {
 // Friction models (--friction); see harness/experiment/friction.h.
 //   none           one row a contact
 //   constant       bound = h * friction_force_n
-//   box            bound = mu * predicted normal impulse (matched contact of the previous step, then 5
-//                  Gauss-Seidel sweeps with moving bounds), then frozen: a true MLCP, the same for every solver
+//   box            bound = mu * predicted normal impulse (matched contact of the previous step, then
+//                  bound_sweeps of Gauss-Seidel with moving bounds), then frozen: a true MLCP, the same for
+//                  every solver
 //   box-converged  outer fixed point on the bounds to 1e-6 relative or a stated cap; the mismatch is reported
 //   cone, coulomb  no bounds: the contacts' sets (StepProblem::contact_set)
 enum class FrictionModel { none, constant, box, box_converged, cone, coulomb };
+
+inline constexpr int kBoundSweeps = 5;
 
 struct ExtractOptions {
   double h_s = 1.0 / 60;  // > 0
   double erp = 0.2;       // >= 0
   double cfm = 1e-5;      // >= 0, s/kg for linear rows
   FrictionModel friction = FrictionModel::box;
-  double mu = 0.5;              // >= 0
-  double friction_force_n = 0;  // >= 0, of `constant`
+  double mu = 0.5;                  // >= 0
+  double friction_force_n = 0;      // >= 0, of `constant`
+  int bound_sweeps = kBoundSweeps;  // >= 0, of `box` and `box_converged`
 };
 
 // Builds the rows. Friction bounds of all models with a coefficient are left at +-mu * warm normal impulse;

@@ -1,19 +1,20 @@
 // ODE's permanent joints as ODE itself sees them: their rows come from the functions that dWorldStep calls,
-// because ODE's public interface does not give a joint's rest pose (the relative rotation a fixed joint or a slider
-// holds).
+// because ODE's public interface does not give a joint's rest pose (the relative rotation a fixed joint or a
+// slider holds).
 //
-// Ball (3 rows), hinge (5), slider (5) and fixed (6). A hinge or slider that is driven by a motor or at one of its
-// stops has a sixth row, of its axis a, with J v the speed along or about it:
+// Ball (3 rows), hinge (5), slider (5) and fixed (6). A hinge or slider that is driven by a motor or at one
+// of its stops has a sixth row, of its axis a, with J v the speed along or about it:
 //     motor:         b = wanted speed,                          -F_max <= force <= F_max
 //     at a stop:     b = -(stop erp / h) (position - stop), or the speed it bounces back with,
 //                    0 <= force at the low stop, force <= 0 at the high one, any where the two are one
-//     both at once:  the row of the stop; the motor pushes the bodies with F_max from outside (times the fudge factor
-//                    where it drives off the stop)
+//     both at once:  the row of the stop; the motor pushes the bodies with F_max from outside (times the
+//                    fudge factor where it drives off the stop)
 //
-// Softness: a joint has parameters of its own, which ODE copies from the world's ERP and CFM when it is created. One
-// that still equals dWorldGetERP (dWorldGetCFM) counts as not set and takes the step's value; another one is kept. A
-// world's ERP and CFM must therefore not be changed after its joints exist. Ball: all rows; fixed: the three position
-// rows only, as in ODE; hinge and slider: cfm of the motor, erp and cfm of the stops.
+// Softness: a joint has parameters of its own, which ODE copies from the world's ERP and CFM when it is
+// created. One that still equals dWorldGetERP (dWorldGetCFM) counts as not set and takes the step's value;
+// another one is kept. A world's ERP and CFM must therefore not be changed after its joints exist. Ball: all
+// rows; fixed: the three position rows only, as in ODE; hinge and slider: cfm of the motor, erp and cfm of
+// the stops.
 #pragma once
 
 #include <ode/ode.h>
@@ -34,12 +35,12 @@ struct OdeJointRows {
   double motor_force = 0;
 };
 
-// erp, cfm: of the step. No rows where the joint is disabled or has no body. Leaves the joint as it was. Throws
-// std::runtime_error naming the joint by its index when its type is another one.
+// erp, cfm: of the step. No rows where the joint is disabled or has no body. Leaves the joint as it was.
+// Throws std::runtime_error naming the joint by its index when its type is another one.
 OdeJointRows ode_joint_rows(dWorldID world, dJointID joint, int index, double h_s, double erp, double cfm);
 
-// How far the points are apart that an enabled joint holds together: the norm of ODE's position error over those of its
-// permanent rows that are not about directions, m. Throws as above.
+// How far the points are apart that an enabled joint holds together: the norm of ODE's position error over
+// those of its permanent rows that are not about directions, m. Throws as above.
 double ode_joint_gap_m(dJointID joint, int index);
 
 }  // namespace cleave

@@ -59,7 +59,8 @@ class OdeWorld {
 
   BodyState state(int body) const;
   std::vector<double> positions_m() const;  // (n, 3) of all bodies
-  // Number of the group that each body belongs to, by first appearance, -1 for none; empty where none is named.
+  // Number of the group that each body belongs to, by first appearance, -1 for none; empty where none is
+  // named.
   std::vector<int> body_groups() const;
   void set_state(int body, const BodyState& state);  // normalises the orientation
   std::uint64_t state_hash() const;  // FNV-1a-64 over position, orientation, velocity of all bodies by index

@@ -1,8 +1,10 @@
-// Which of many axis-aligned boxes overlap: what narrows the pairs of geoms down before their shapes are looked at.
+// Which of many axis-aligned boxes overlap: what narrows the pairs of geoms down before their shapes are
+// looked at.
 //
-// A binary tree over the boxes, halved at the median of their middles along the longest side of what holds them,
-// and walked against itself: O(n log n + pairs) for boxes that overlap few others, whatever their sizes. ODE's own
-// spaces sweep along one axis, n^(3/2) on a flat pile and n^(5/3) on a high one, or keep n^2 bits.
+// A binary tree over the boxes, halved at the median of their middles along the longest side of what holds
+// them, and walked against itself: O(n log n + pairs) for boxes that overlap few others, whatever their
+// sizes. ODE's own spaces sweep along one axis, n^(3/2) on a flat pile and n^(5/3) on a high one, or keep n^2
+// bits.
 #pragma once
 
 #include <array>

@@ -1,5 +1,6 @@
 // What a step is made of besides its problem: read by solvers that are ODE itself, by partitioners that go by
-// positions or groups and by whoever writes a step down. One object a simulation, set anew on every step before anyone solves.
+// positions or groups and by whoever writes a step down. One object a simulation, set anew on every step
+// before anyone solves.
 #pragma once
 
 #include <span>
@@ -14,7 +15,7 @@ struct StepContext {
   std::span<const ContactPoint> contacts;
   double erp = 0, cfm = 0;              // of the run
   std::vector<double> position_m = {};  // (n, 3) centres of the bodies; empty where nobody knows them
-  std::vector<int> body_group = {};     // (n) numbers of the groups that the scene names, -1 for none; or empty
+  std::vector<int> body_group = {};     // (n) numbers of groups that the scene names, -1 for none; or empty
 };
 
 }  // namespace cleave

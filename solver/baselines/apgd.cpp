@@ -2,23 +2,25 @@
 //
 //     f(lambda) = 1/2 lambda^T A lambda + lambda^T (J v0 - b),   A = J M^-1 J^T + C,   lo <= lambda <= hi,
 //
-// whose gradient is the slack w = J v + C lambda - b; A is never formed. In units in which its diagonal is 1, that is with
-// lengths |x|^2 = sum d_r x_r^2, one iteration from lambda_k and the extrapolated y_k (slack w_y) is
+// whose gradient is the slack w = J v + C lambda - b; A is never formed. In units in which its diagonal is 1,
+// that is with lengths |x|^2 = sum d_r x_r^2, one iteration from lambda_k and the extrapolated y_k (slack
+// w_y) is
 //
-//     lambda_k+1 = clamp(y_k - w_y / (L d))                          L doubled while (lambda_k+1 - y_k)^T A (lambda_k+1 - y_k)
-//                                                                    is above L |lambda_k+1 - y_k|^2
+//     lambda_k+1 = clamp(y_k - w_y / (L d)),    L doubled while, with s = lambda_k+1 - y_k, s^T A s > L |s|^2
 //     theta_k+1^2 = (1 - theta_k+1) theta_k^2,  beta = theta_k (1 - theta_k) / (theta_k^2 + theta_k+1)
 //     y_k+1 = lambda_k+1 + beta (lambda_k+1 - lambda_k)
 //     where w_y^T (lambda_k+1 - lambda_k) > 0: y_k+1 = lambda_k+1, theta_k+1 = 1;    then L <- 0.9 L
 //
-// and the iterate of the least residual is the result. It ends after `sweeps` iterations, or where the residual is at most
-// the solver's target or `until`. An iteration costs one product with J and one with M^-1 J^T, and both again for every doubling.
+// and the iterate of the least residual is the result. It ends after `sweeps` iterations, or where the
+// residual is at most the solver's target or `until`. An iteration costs one product with J and one with M^-1
+// J^T, and both again for every doubling.
 //
-// Source: Mazhar, Heyn, Negrut and Tasora, Using Nesterov's method to accelerate multibody dynamics with friction and
-// contact, ACM Transactions on Graphics 34(3), 2015, algorithm 1, on the sequence of Nesterov 1983 with the restart of
-// O'Donoghue and Candes 2015, section 3.2. What differs: boxes in place of cones, units with diagonal 1, a warm start, the
-// judge's residual in place of theirs, and L ends at a bound that needs no test: with at most N rows on a body,
-// x^T A x <= N |x|^2 (Cauchy and Schwarz, as in split_sweep.h). Rounding could double it for ever.
+// Source: Mazhar, Heyn, Negrut and Tasora, Using Nesterov's method to accelerate multibody dynamics with
+// friction and contact, ACM Transactions on Graphics 34(3), 2015, algorithm 1, on the sequence of Nesterov
+// 1983 with the restart of O'Donoghue and Candes 2015, section 3.2. What differs: boxes in place of cones,
+// units with diagonal 1, a warm start, the judge's residual in place of theirs, and L ends at a bound that
+// needs no test: with at most N rows on a body, x^T A x <= N |x|^2 (Cauchy and Schwarz, as in split_sweep.h).
+// Rounding could double it for ever.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -122,7 +124,8 @@ void Apgd::start(const PreparedStep& step, Solution& solution) {
   keep_if_best(step, last_);
 }
 
-// |A x| / |x| along the vector of ones of the units with diagonal 1; A's greatest eigenvalue is at least 1 there.
+// |A x| / |x| along the vector of ones of the units with diagonal 1; A's greatest eigenvalue is at least 1
+// there.
 double Apgd::first_curvature(const PreparedStep& step, std::span<double> v) {
   for (int r = 0; r < step.row_count(); ++r)
     next_.impulse[r] = last_.impulse[r] + 1 / std::sqrt(step.diagonal()[r]);

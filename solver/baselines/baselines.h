@@ -1,4 +1,5 @@
-// Solvers that are not a strategy on a kernel. One file each in this folder, declared here, one row each in registry.cpp.
+// Solvers that are not a strategy on a kernel. One file each in this folder, declared here, one row each in
+// registry.cpp.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,7 @@
-// Groups of rows that share no dynamic body within a colour (group_coloring.h), visited by projected Gauss-Seidel on several
-// threads: colour after colour, those of one colour side by side. In whichever order threads come to them, bytes are the same.
-// Fratarcangeli, Tibaldo, Pellacini: Vivace, ACM Transactions on Graphics 35(6), 2016, section 4.
+// Groups of rows that share no dynamic body within a colour (group_coloring.h), visited by projected
+// Gauss-Seidel on several threads: colour after colour, those of one colour side by side. In whichever order
+// threads come to them, bytes are the same. Fratarcangeli, Tibaldo, Pellacini: Vivace, ACM Transactions on
+// Graphics 35(6), 2016, section 4.
 #pragma once
 
 #include <algorithm>
@@ -41,7 +42,7 @@ class ColoredGroups {
     tasks.run(ceil_div(count, kTaskGroups), [&](int task) {
       const int last = std::min(count, (task + 1) * kTaskGroups);
       for (int i = task * kTaskGroups; i < last; ++i)
-        gauss_seidel_visit(step, groups_[members[i]], LaneSlack{}, WithinBounds{step}, solution.impulse,
+        gauss_seidel_visit(step, groups_[members[i]], LaneSlack{}, WithinBounds(step), solution.impulse,
                            solution.velocity);
     });
   }

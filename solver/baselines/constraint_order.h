@@ -1,15 +1,17 @@
-// The order in which sweeps visit constraints (joints, contact points; the rows of one stay together and in their order):
+// The order in which sweeps visit constraints (joints, contact points; the rows of one stay together and in
+// their order):
 //
 //     natural        as the problem numbers them
 //     random         every order is equally likely, another one in every sweep
 //     height         the lowest contact_point (third coordinate, z is up) first
-//     propagation    as contact spreads from what stands still and from joints, level after level: level 0 are joints and
-//                    constraints with a body that stands still, level k + 1 those with a body of a constraint of level k;
-//                    what nothing reaches comes last
+//     propagation    as contact spreads from what stands still and from joints, level after level: level 0
+//                    are joints and constraints with a body that stands still, level k + 1 those with a body
+//                    of a constraint of level k; what nothing reaches comes last
 //
-// Ties keep their natural order. Sources: Poulsen, Niebe and Erleben, Heuristic convergence rate improvements of the projected
-// Gauss-Seidel method for frictional contact problems, WSCG 2010, section 4; Andrews, Erleben, Kry and Teichmann, Constraint
-// reordering for iterative multi-body simulation with contact, ECCOMAS Multibody Dynamics 2017.
+// Ties keep their natural order. Sources: Poulsen, Niebe and Erleben, Heuristic convergence rate improvements
+// of the projected Gauss-Seidel method for frictional contact problems, WSCG 2010, section 4; Andrews,
+// Erleben, Kry and Teichmann, Constraint reordering for iterative multi-body simulation with contact, ECCOMAS
+// Multibody Dynamics 2017.
 #pragma once
 
 #include <span>
@@ -29,7 +31,8 @@ class ConstraintOrder {
 
   // Depends on the problem, kind and seed alone; buffers are kept.
   void begin(const PreparedStep& step);
-  // Constraints of the next sweep, or in natural order all of a pair of bodies as one. Valid until the next call.
+  // Constraints of the next sweep, or in natural order all of a pair of bodies as one. Valid until the next
+  // call.
   std::span<const RowGroup> next(const PreparedStep& step);
 
  private:

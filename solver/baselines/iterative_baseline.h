@@ -1,10 +1,10 @@
-// The frame of baselines that improve impulse and velocity by iterating: prepares the step on all threads, has it
-// iterated, and says not_converged where the residual they leave is above the limit.
+// The frame of baselines that improve impulse and velocity by iterating: prepares the step on all threads,
+// has it iterated, and says not_converged where the residual they leave is above the limit.
 //
-// Both budgets of an iterative baseline end it, whichever is met first: `sweeps`, and `until`, the judge's residual over
-// max(1, largest |v0|). As a look at the residual costs about as much as a sweep, sweeping baselines look before the sweeps
-// 0, 1, 2, ... 8, 9, 10, ... 16, 18, 20, ...: the next look is an eighth of the sweeps later. So a look costs little, and at
-// most an eighth of the sweeps are made in vain.
+// Both budgets of an iterative baseline end it, whichever is met first: `sweeps`, and `until`, the judge's
+// residual over max(1, largest |v0|). As a look at the residual costs about as much as a sweep, sweeping
+// baselines look before the sweeps 0, 1, 2, ... 8, 9, 10, ... 16, 18, 20, ...: the next look is an eighth of
+// the sweeps later. So a look costs little, and at most an eighth of the sweeps are made in vain.
 #pragma once
 
 #include <span>
@@ -25,7 +25,7 @@ class IterativeBaseline : public StepSolver {
   IterativeBaseline(std::string_view name, const SolveOptions& options)
       : name_(name),
         stop_(options.stop),
-        clock_(options.threads, options.dispatch),
+        clock_(options.threads, options.dispatch, options.models_workers),
         tasks_(clock_, options.threads) {}
   bool uses_partition() const override { return false; }
 
@@ -40,8 +40,8 @@ class IterativeBaseline : public StepSolver {
   double residual(const PreparedStep& step, const Solution& solution);
 
  private:
-  // Improves solution.impulse (m), the warm start at first, and solution.velocity = v0 + M^-1 J^T impulse. Returns the
-  // number of iterations. A set of impulses that is no interval of a row is refused before.
+  // Improves solution.impulse (m), the warm start at first, and solution.velocity = v0 + M^-1 J^T impulse.
+  // Returns the number of iterations. A set of impulses that is no interval of a row is refused before.
   virtual int iterate(const PreparedStep& step, Solution& solution) = 0;
 
   std::string refuse_set(const StepProblem& problem) final;

@@ -1,11 +1,11 @@
-// Solver `jacobi-split`: mass splitting. All pairs of bodies that share rows are solved side by side, each once over its
-// rows, on copies of its two bodies that have a share of their mass; then the copies of every body are averaged. Equations
-// and why it converges are in split_sweep.h.
+// Solver `jacobi-split`: mass splitting. All pairs of bodies that share rows are solved side by side, each
+// once over its rows, on copies of its two bodies that have a share of their mass; then the copies of every
+// body are averaged. Equations and why it converges are in split_sweep.h.
 //
-// Source: Tonge, Benevolenski and Voroshilov, ACM Transactions on Graphics 31(4), 2012: a body of k blocks of contacts is
-// k bodies of 1/k of its mass, and a block is what lies between two bodies. Theirs has contacts alone; here rows of joints
-// are blocks like others. A run of rows between two bodies is a block, as the step lists them: two constraints between
-// the same bodies with others between them are two blocks.
+// Source: Tonge, Benevolenski and Voroshilov, ACM Transactions on Graphics 31(4), 2012: a body of k blocks of
+// contacts is k bodies of 1/k of its mass, and a block is what lies between two bodies. Theirs has contacts
+// alone; here rows of joints are blocks like others. A run of rows between two bodies is a block, as the step
+// lists them: two constraints between the same bodies with others between them are two blocks.
 #include <numeric>
 
 #include "solver/baselines/baselines.h"

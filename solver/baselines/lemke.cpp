@@ -1,22 +1,25 @@
-// Solver `lemke`: the step problem as a linear complementarity problem (LCP), solved by Lemke's pivots (lemke_tableau.h) on
-// dense matrices. With A = J M^-1 J^T + C and q = J v0 - b, in units in which A has diagonal 1 (y_r = sqrt(d_r) lambda_r,
-// w_r / sqrt(d_r)):
+// Solver `lemke`: the step problem as a linear complementarity problem (LCP), solved by Lemke's pivots
+// (lemke_tableau.h) on dense matrices. With A = J M^-1 J^T + C and q = J v0 - b, in units in which A has
+// diagonal 1 (y_r = sqrt(d_r) lambda_r, w_r / sqrt(d_r)):
 //
 //     rows with lo = hi                 y = lo, no unknown
-//     rows without bounds, F            eliminated by Schur complement: S = A_BB - A_BF A_FF^-1 A_FB. Largest pivot first; rows
-//                                       that then have none left depend on others (C = 0) and take no impulse of their own
+//     rows without bounds, F            eliminated by Schur complement: S = A_BB - A_BF A_FF^-1 A_FB. Largest
+//                                       pivot first; rows that then have none left depend on others (C = 0)
+//                                       and take no impulse of their own
 //     rows with a lower bound           z = y - lo >= 0
 //     with an upper bound alone         z = hi - y >= 0, the row turned round
 //     with both, z <= u = hi - lo       a pair more, multiplier mu of the slack s:
 //
-//                                           | w |   |  S  I | | z  |   | q |
-//                                           | s | = | -I  0 | | mu | + | u |        all >= 0, w^T z = 0, s^T mu = 0
+//                                           | w |   |  S  I | | z  |   | q |     all >= 0,
+//                                           | s | = | -I  0 | | mu | + | u |     w^T z = 0,  s^T mu = 0
 //
-// The final basis says which rows are free and which at which bound. The free ones, F among them, are then solved once more
-// from the step itself, with refinement on its slack: pivots leave their rounding behind. The warm start is not used: Lemke
-// has to begin where it begins. A ray, or the limit of pivots, ends with what the basis at hand gives, and says so.
+// The final basis says which rows are free and which at which bound. The free ones, F among them, are then
+// solved once more from the step itself, with refinement on its slack: pivots leave their rounding behind.
+// The warm start is not used: Lemke has to begin where it begins. A ray, or the limit of pivots, ends with
+// what the basis at hand gives, and says so.
 //
-// Source: Lemke 1965; Cottle, Pang and Stone 1992, section 4.4; Murty 1988, chapter 2. The box as slack pairs is common.
+// Source: Lemke 1965; Cottle, Pang and Stone 1992, section 4.4; Murty 1988, chapter 2. The box as slack pairs
+// is common.
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <cmath>
@@ -43,7 +46,9 @@ constexpr int kMostRefinements = 50;
 class Lemke : public StepSolver {
  public:
   Lemke(const SolveOptions& options, int most_rows)
-      : options_(options), clock_(options.threads, options.dispatch), most_rows_(most_rows) {}
+      : options_(options),
+        clock_(options.threads, options.dispatch, options.models_workers),
+        most_rows_(most_rows) {}
   bool uses_partition() const override { return false; }
 
  private:
@@ -52,6 +57,7 @@ class Lemke : public StepSolver {
   }
   SolveSummary do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) override;
   void list_rows();
+  void solve_in_memory(const StepProblem& problem, Solution& solution, SolveSummary& summary);
   void request_memory(SolveSummary& summary) const;
   void assemble();
   void eliminate_unbounded();
@@ -89,6 +95,16 @@ SolveSummary Lemke::do_solve(const StepProblem& problem, const Parts&, Solution&
         std::to_string(problem.row_count()) + " rows, more than lemke-max-rows " + std::to_string(most_rows_);
     return summary;
   }
+  try {
+    solve_in_memory(problem, solution, summary);
+  } catch (const MemoryRefused& refused) {
+    summary.status = SolveStatus::out_of_memory;
+    summary.message = refused.what();
+  }
+  return summary;
+}
+
+void Lemke::solve_in_memory(const StepProblem& problem, Solution& solution, SolveSummary& summary) {
   clock_.start();
   {
     StageTimer timer(clock_, Stage::assemble);
@@ -120,7 +136,6 @@ SolveSummary Lemke::do_solve(const StepProblem& problem, const Parts&, Solution&
     summary.message = reason(end, residual);
   }
   summary.times = clock_.stop();
-  return summary;
 }
 
 void Lemke::list_rows() {
@@ -153,9 +168,8 @@ void Lemke::request_memory(SolveSummary& summary) const {
   MemoryCount memory;
   memory.add<double>(4 * m, m);  // A, S, and what the last solve factors, twice
   memory.add<double>(LemkeTableau::size_of(bounded_.size() + pairs_.size()));
-  MemoryBudget budget(options_.memory_limit_bytes);
-  budget.request(memory);
-  summary.factor_predicted_mb = 1e-6 * static_cast<double>(budget.needed_bytes());
+  summary.factor_predicted_mb = 1e-6 * static_cast<double>(memory.bytes());
+  MemoryBudget(options_.memory_limit_bytes).request(memory);
 }
 
 // A body adds to the entries of all pairs of rows that it is in.
@@ -251,8 +265,8 @@ void Lemke::update(Solution& solution) {
   step_.slack(solution.velocity, solution.impulse, slack_);
 }
 
-// The impulses of the free rows so that their slack is zero, by increments until it is: where they reach rounding, which lets it
-// rise and fall, the best of all stay.
+// The impulses of the free rows so that their slack is zero, by increments until it is: where they reach
+// rounding, which lets it rise and fall, the best of all stay.
 void Lemke::solve_free(SolveSummary& summary, Solution& solution) {
   std::vector<int> free;
   for (int r = 0; r < step_.row_count(); ++r)

@@ -52,7 +52,8 @@ LemkeTableau::End LemkeTableau::solve(int most_pivots, const std::atomic<bool>* 
   return End::solved;
 }
 
-// The lexicographically least row of [q, I]: of equal q the last, as its unit comes latest. -1: q >= 0, and z = 0 it is.
+// The lexicographically least row of [q, I]: of equal q the last, as its unit comes latest. -1: q >= 0, and z
+// = 0 it is.
 int LemkeTableau::first_leaving() const {
   int least = -1;
   double q = 0;

@@ -2,17 +2,20 @@
 //
 //     w = M z + q,   w >= 0,  z >= 0,  w^T z = 0.
 //
-// An artificial variable z0 makes the start feasible, w = M z + q + e z0 with e all ones. z0 enters where q is most
-// negative; after that the complement of the variable that has left enters, until z0 leaves (solved) or nothing can (a
-// ray). The variable that leaves is that of the lexicographically least row of [q, B^-1] over the entering column, B the
-// basis matrix: no basis comes twice, however degenerate the problem is. Where z0 may leave, it does.
+// An artificial variable z0 makes the start feasible, w = M z + q + e z0 with e all ones. z0 enters where q
+// is most negative; after that the complement of the variable that has left enters, until z0 leaves (solved)
+// or nothing can (a ray). The variable that leaves is that of the lexicographically least row of [q, B^-1]
+// over the entering column, B the basis matrix: no basis comes twice, however degenerate the problem is.
+// Where z0 may leave, it does.
 //
-// For M positive semidefinite, and a bit beyond, a ray means that no z >= 0 has M z + q >= 0 (Cottle, Pang and Stone,
-// theorem 4.4.13) -- in exact arithmetic. The number of pivots can grow like 2^n (Murty 1978), and is about n mostly.
+// For M positive semidefinite, and a bit beyond, a ray means that no z >= 0 has M z + q >= 0 (Cottle, Pang
+// and Stone, theorem 4.4.13) -- in exact arithmetic. The number of pivots can grow like 2^n (Murty 1978), and
+// is about n mostly.
 //
-// Source: Lemke, Management Science 11, 1965; Cottle, Pang and Stone, The Linear Complementarity Problem, 1992, section 4.4
-// (algorithm) and 4.9 (lexicographic degeneracy resolution); Murty, Linear Complementarity, Linear and Nonlinear
-// Programming, 1988, chapter 2. The tableau is kept whole, n x (2 n + 2) numbers: columns q, w, z, z0.
+// Source: Lemke, Management Science 11, 1965; Cottle, Pang and Stone, The Linear Complementarity Problem,
+// 1992, section 4.4 (algorithm) and 4.9 (lexicographic degeneracy resolution); Murty, Linear Complementarity,
+// Linear and Nonlinear Programming, 1988, chapter 2. The tableau is kept whole, n x (2 n + 2) numbers:
+// columns q, w, z, z0.
 #pragma once
 
 #include <atomic>

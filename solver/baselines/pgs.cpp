@@ -1,6 +1,6 @@
-// Solver `pgs`: projected Gauss-Seidel (gauss_seidel.h) over constraints in one of several orders (constraint_order.h), until
-// its sweeps are made or the residual is small enough. The iterative baseline: cheap, and honest about what it leaves
-// (status not_converged unless the residual is within the limit).
+// Solver `pgs`: projected Gauss-Seidel (gauss_seidel.h) over constraints in one of several orders
+// (constraint_order.h), until its sweeps are made or the residual is small enough. The iterative baseline:
+// cheap, and honest about what it leaves (status not_converged unless the residual is within the limit).
 #include "solver/baselines/baselines.h"
 #include "solver/baselines/constraint_order.h"
 #include "solver/baselines/iterative_baseline.h"
@@ -20,7 +20,7 @@ class Pgs : public SweepingBaseline {
   void begin(const PreparedStep& step) override { order_.begin(step); }
   void sweep(const PreparedStep& step, Solution& solution) override {
     for (const RowGroup& g : order_.next(step))
-      gauss_seidel_visit(step, g, LaneSlack{}, WithinBounds{step}, solution.impulse, solution.velocity);
+      gauss_seidel_visit(step, g, LaneSlack{}, WithinBounds(step), solution.impulse, solution.velocity);
   }
 
   ConstraintOrder order_;

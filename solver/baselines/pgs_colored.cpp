@@ -1,5 +1,5 @@
-// Solver `pgs-colored`: projected Gauss-Seidel (gauss_seidel.h) on several threads. A sweep goes through the colours of the
-// groups of rows one after another (colored_groups.h).
+// Solver `pgs-colored`: projected Gauss-Seidel (gauss_seidel.h) on several threads. A sweep goes through the
+// colours of the groups of rows one after another (colored_groups.h).
 #include "solver/baselines/baselines.h"
 #include "solver/baselines/colored_groups.h"
 #include "solver/baselines/iterative_baseline.h"

@@ -1,10 +1,12 @@
 // Solver `pgs-parts`: projected Gauss-Seidel (gauss_seidel.h) over the parts of the partition. A sweep is
 //
 //     the rows inside of parts: parts side by side, in natural order within each;
-//     the rows of the cut, between two parts: colour after colour, those of one colour side by side (colored_groups.h)
+//     the rows of the cut, between two parts: colour after colour, those of one colour side by side
+//     (colored_groups.h)
 //
-// Parts share no dynamic body, so the bytes do not depend on threads. With one part it is `pgs` in natural order. How fast it
-// converges depends on the order alone that the partition makes, so that it measures partitions for iterative solvers.
+// Parts share no dynamic body, so the bytes do not depend on threads. With one part it is `pgs` in natural
+// order. How fast it converges depends on the order alone that the partition makes, so that it measures
+// partitions for iterative solvers.
 #include <algorithm>
 
 #include "solver/baselines/baselines.h"
@@ -44,7 +46,7 @@ class PgsParts : public SweepingBaseline {
   void sweep(const PreparedStep& step, Solution& solution) override {
     tasks().run(part_count_, [&](int part) {
       for (int i = first_inside_[part]; i < first_inside_[part + 1]; ++i)
-        gauss_seidel_visit(step, step.groups()[inside_[i]], LaneSlack{}, WithinBounds{step}, solution.impulse,
+        gauss_seidel_visit(step, step.groups()[inside_[i]], LaneSlack{}, WithinBounds(step), solution.impulse,
                            solution.velocity);
     });
     cut_groups_.sweep(step, tasks(), solution);

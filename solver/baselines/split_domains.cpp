@@ -1,16 +1,18 @@
-// Solver `split-domains`: the parts of the partition sweep their own rows side by side, each with its own copy of the
-// velocities of bodies that it shares with others; after every sweep the copies are averaged. A row belongs to the part of
-// its first body. Equations and why it converges are in split_sweep.h; with one part it is `pgs`.
+// Solver `split-domains`: the parts of the partition sweep their own rows side by side, each with its own
+// copy of the velocities of bodies that it shares with others; after every sweep the copies are averaged. A
+// row belongs to the part of its first body. Equations and why it converges are in split_sweep.h; with one
+// part it is `pgs`.
 //
-// Source: Iglberger and Ruede, Large-scale rigid body simulations, Multibody System Dynamics 25, 2011, where domains are
-// boxes in space on processes of their own, bodies that reach over the border have copies on both sides, and what every
-// side's contacts change in their velocities is sent to the owner and added up. What differs here:
+// Source: Iglberger and Ruede, Large-scale rigid body simulations, Multibody System Dynamics 25, 2011, where
+// domains are boxes in space on processes of their own, bodies that reach over the border have copies on both
+// sides, and what every side's contacts change in their velocities is sent to the owner and added up. What
+// differs here:
 //
 // - Domains are the parts of any partitioner, and the processes are tasks of one.
-// - A copy in one of k domains has 1/k of the body's mass (Tonge, Benevolenski and Voroshilov 2012), and copies are averaged.
-//   Changes of copies of full mass, added up, overshoot where several domains push one body, and need not converge; the
-//   average of split bodies lowers the energy in every sweep. Added-up changes of impulses are the same in both: v = v0 +
-//   M^-1 J^T lambda holds after every sweep.
+// - A copy in one of k domains has 1/k of the body's mass (Tonge, Benevolenski and Voroshilov 2012), and
+//   copies are averaged. Changes of copies of full mass, added up, overshoot where several domains push one
+//   body, and need not converge; the average of split bodies lowers the energy in every sweep. Added-up
+//   changes of impulses are the same in both: v = v0 + M^-1 J^T lambda holds after every sweep.
 // - Copies meet after each sweep over all rows, contacts and joints alike.
 #include <algorithm>
 

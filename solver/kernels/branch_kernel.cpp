@@ -50,9 +50,9 @@ void BranchKernel::request_memory(const PreparedStep& step, ParallelTasks& tasks
 bool BranchKernel::rebind(const PreparedStep& step, const Parts&, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
   if (!matrix_.rebind_whole(step)) return false;
-  bind(step);
   request_memory(step, tasks, true);
   matrix_.allocate();
+  bind(step);
   return true;
 }
 
@@ -71,8 +71,8 @@ void BranchKernel::list_tasks(int threads) {
   substitution_.join(symbolic, threads);
 }
 
-// With the rows that the weights turn, in one pass. Rows in blocks are turned by their bases too, so that equal weights do not say
-// that nothing has changed.
+// With the rows that the weights turn, in one pass. Rows in blocks are turned by their bases too, so that
+// equal weights do not say that nothing has changed.
 void BranchKernel::find_changed(const RowWeights& weights, const RowWork& before, ParallelTasks& tasks) {
   const long preparation = step_->preparations();
   const bool is_new = std::exchange(factored_preparation_, preparation) != preparation;
@@ -125,7 +125,8 @@ void BranchKernel::substitute(ParallelTasks& tasks, const Before& before, const 
   });
 }
 
-// Rows go in chunks in the order in which they lie in memory: branch by branch, in the graph, the whole took a tenth longer.
+// Rows go in chunks in the order in which they lie in memory: branch by branch, in the graph, the whole took
+// a tenth longer.
 void BranchKernel::solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
                          std::span<double> dlambda, ParallelTasks& tasks, const RowsAround& around) {
   StageTimer timer(tasks.clock(), Stage::solve);

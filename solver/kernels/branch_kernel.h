@@ -1,15 +1,17 @@
-// What `monolithic` and the kernels with an interface of bodies share: one sparse block Cholesky factorisation of
-// H = M + J^T D J over all bodies,
+// What `monolithic` and the kernels with an interface of bodies share: one sparse block Cholesky
+// factorisation of H = M + J^T D J over all bodies,
 //
 //     H dv = f_v + J^T D f_r,     dlambda = D (f_r - J dv),
 //
-// dealt out in branches of its elimination tree (block_symbolic.h). A branch is assembled at any time and factored after its
-// child branches, in tiles where it is large (factor_tasks.h). Substitution is one graph, forward from the leaves
-// to the root and back again, whose tasks are branches joined until they are worth one (branch_groups.h); what is read off rows comes before and after it, in chunks that lie side by side in memory. A kernel
-// only says in what order bodies are eliminated.
+// dealt out in branches of its elimination tree (block_symbolic.h). A branch is assembled at any time and
+// factored after its child branches, in tiles where it is large (factor_tasks.h). Substitution is one graph,
+// forward from the leaves to the root and back again, whose tasks are branches joined until they are worth
+// one (branch_groups.h); what is read off rows comes before and after it, in chunks that lie side by side in
+// memory. A kernel only says in what order bodies are eliminated.
 //
-// Strategies that end near the solution change few weights from one factorisation to the next. Only branches with a changed
-// row, and those above them, are made anew; the others stand as they are, and the factor has the bytes of a whole one.
+// Strategies that end near the solution change few weights from one factorisation to the next. Only branches
+// with a changed row, and those above them, are made anew; the others stand as they are, and the factor has
+// the bytes of a whole one.
 #pragma once
 
 #include <span>

@@ -34,12 +34,13 @@ class Kernel {
   // bodies that shares a row has its place in the analysed pattern, whose order is then kept. False: analyze.
   virtual bool rebind(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) = 0;
 
-  // Numeric factorisation for D, diagonal or with blocks; before: writes the weights of a chunk's rows, before they are
-  // read. False when the matrix is not positive definite to working precision.
+  // Numeric factorisation for D, diagonal or with blocks; before: writes the weights of a chunk's rows,
+  // before they are read. False when the matrix is not positive definite to working precision.
   virtual bool factor(const RowWeights& weights, ParallelTasks& tasks, const RowWork& before = {}) = 0;
 
   // Solves with the last factor; f_v (n, 6), f_r (m), dv (n, 6), dlambda (m).
-  // On the rows of a block f_r and dlambda are along its basis. around: before f_r is read, and after dlambda is written.
+  // On the rows of a block f_r and dlambda are along its basis. around: before f_r is read, and after dlambda
+  // is written.
   virtual void solve(std::span<const double> f_v, std::span<const double> f_r, std::span<double> dv,
                      std::span<double> dlambda, ParallelTasks& tasks, const RowsAround& around = {}) = 0;
 
@@ -50,8 +51,8 @@ class Kernel {
   // Of the last one, which may have kept what had not changed.
   virtual double done_mflop() const { return local_mflop() + interface_mflop(); }
 
-  // Whether its factor is one of H alone, without rows, so that it can serve a later step (carried_factor.h). Only
-  // then is there:
+  // Whether its factor is one of H alone, without rows, so that it can serve a later step (carried_factor.h).
+  // Only then is there:
   virtual bool can_be_carried() const { return false; }
   // x (n, 6) = H^-1 f with the H of the last factorisation, of whatever step that was with these bodies.
   virtual void apply_factor(std::span<const double>, std::span<double>, ParallelTasks&) {}

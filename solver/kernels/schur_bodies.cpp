@@ -5,8 +5,9 @@
 //         |       H_22     H_2K |
 //         | H_K1  H_K2 ... H_KK |
 //
-// interiors are eliminated in parallel, then S. This is one sparse Cholesky factorisation whose order is constrained to
-// interiors first, so it needs no J H^-1 J^T, and stays factorable where all cut rows are active.
+// interiors are eliminated in parallel, then S. This is one sparse Cholesky factorisation whose order is
+// constrained to interiors first, so it needs no J H^-1 J^T, and stays factorable where all cut rows are
+// active.
 #include "solver/kernels/branch_kernel.h"
 
 namespace cleave {

@@ -46,9 +46,27 @@ void SchurPart::count_right_hand_sides(const PartRows& rows, MemoryCount& memory
   memory.add<double>(6 * sides, rows.bodies.size());  // Y
   memory.add<double>(sides, sides);                   // its Gram matrix
   memory.add<double>(sides);                          // coupling
-  memory.add<int>(5, sides);                          // order, and twice what is active and where
-  memory.add<double>(12, rows.bodies.size());         // velocity, by position and by body
-  memory.add<int>(3, rows.bodies.size() + 1);         // at most a supernode a body
+  memory.add<int>(8, sides);                   // order, and twice what is active, was, where, and by its row
+  memory.add<double>(12, rows.bodies.size());  // velocity, by position and by body
+  memory.add<int>(3, rows.bodies.size() + 1);  // at most a supernode a body
+}
+
+bool SchurPart::take_weights(std::span<const double> d, std::span<double> kept) const {
+  bool any = false;
+  for (const int g : part_rows().groups) {
+    const RowGroup& group = step_->groups()[g];
+    for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
+      any |= kept[r] != d[r];
+      kept[r] = d[r];
+    }
+  }
+  return any;
+}
+
+void SchurPart::assemble(const WeightedRows& rows, bool all, std::span<double> kept_weights) {
+  const bool changed = take_weights(rows.d(), kept_weights);
+  is_remade_ = all || changed;
+  if (is_remade_) matrix_.assemble(rows);
 }
 
 // Of the body of a cut row that is in this part.
@@ -63,6 +81,7 @@ int SchurPart::supernode_of(int entry) const {
 
 void SchurPart::order_cut_rows() {
   order_.resize(part_rows().cut_rows.size());
+  for (std::vector<int>* of_active : {&active_, &kept_active_}) of_active->reserve(order_.size());
   std::iota(order_.begin(), order_.end(), 0);
   std::ranges::sort(order_, [&](int x, int y) {
     const int sx = supernode_of(x), sy = supernode_of(y);
@@ -71,6 +90,7 @@ void SchurPart::order_cut_rows() {
 }
 
 void SchurPart::choose_active(std::span<const int> interface_row) {
+  kept_active_.swap(active_);
   active_.clear();
   interface_row_.clear();
   begin_.assign(matrix_.cholesky().symbolic().supernodes().size() + 1, 0);
@@ -82,6 +102,9 @@ void SchurPart::choose_active(std::span<const int> interface_row) {
     interface_row_.push_back(row);
   }
   std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  by_interface_row_.resize(active_.size());
+  std::iota(by_interface_row_.begin(), by_interface_row_.end(), 0);
+  std::ranges::sort(by_interface_row_, {}, [this](int k) { return interface_row_[k]; });
   ld_ = round_up(static_cast<int>(active_.size()), 6);
 }
 
@@ -120,6 +143,7 @@ void SchurPart::form_gram() {
 
 void SchurPart::form_complement(const WeightedRows& rows, std::span<const int> interface_row) {
   choose_active(interface_row);
+  if (!is_remade_ && active_ == kept_active_) return;
   find_ranges();
   set_right_hand_sides(rows);
   matrix_.cholesky().forward_many(y_.data(), ld_, first_, last_);
@@ -150,9 +174,32 @@ void SchurPart::reduce(const WeightedRows& rows, std::span<const double> f_v, st
   add_impulses(rows, f_r);
   matrix_.cholesky().to_positions(by_body_, velocity_);
   matrix_.cholesky().forward(velocity_.data());
+  add_coupling();
+}
+
+// -Y^T velocity, by supernode, as Y is zero outside its range of right-hand sides.
+void SchurPart::add_coupling() {
   coupling_.assign(ld_, 0.0);
-  subtract_matrix_vector(ld_, static_cast<int>(velocity_.size()), y_.data(), ld_, velocity_.data(),
-                         coupling_.data());
+  const auto supernodes = matrix_.cholesky().symbolic().supernodes();
+  for (std::size_t s = 0; s < supernodes.size(); ++s) {
+    const long column = 6L * supernodes[s].first_position;
+    subtract_matrix_vector(last_[s] - first_[s], 6 * supernodes[s].width,
+                           y_.data() + first_[s] + column * ld_, ld_, velocity_.data() + column,
+                           coupling_.data() + first_[s]);
+  }
+}
+
+// velocity -= Y coupling. Four sums a column run side by side over every fourth right-hand side: ranges begin
+// and end where all four do, so that each has the terms of a product with all of Y.
+void SchurPart::add_impulses_of_interface() {
+  const auto supernodes = matrix_.cholesky().symbolic().supernodes();
+  for (std::size_t s = 0; s < supernodes.size(); ++s) {
+    if (last_[s] == first_[s]) continue;
+    const int begin = first_[s] / 4 * 4, end = std::min(round_up(last_[s], 4), ld_);
+    const long column = 6L * supernodes[s].first_position;
+    subtract_transpose_vector(end - begin, 6 * supernodes[s].width, y_.data() + begin + column * ld_, ld_,
+                              coupling_.data() + begin, velocity_.data() + column);
+  }
 }
 
 // dlambda = D (f_r - J dv)
@@ -174,8 +221,7 @@ void SchurPart::expand(const WeightedRows& rows, std::span<const double> lambda,
                        std::span<double> dv, std::span<double> dlambda) {
   coupling_.assign(ld_, 0.0);
   for (std::size_t k = 0; k < interface_row_.size(); ++k) coupling_[k] = -lambda[interface_row_[k]];
-  subtract_transpose_vector(ld_, static_cast<int>(velocity_.size()), y_.data(), ld_, coupling_.data(),
-                            velocity_.data());
+  add_impulses_of_interface();
   matrix_.cholesky().backward(velocity_.data());
   matrix_.cholesky().to_nodes(velocity_, by_body_);
   const std::vector<int>& bodies = part_rows().bodies;

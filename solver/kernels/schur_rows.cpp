@@ -8,8 +8,11 @@
 // Source: Peiret, Andrews, Koevecses, Kry, Teichmann, "Schur complement-based substructuring of stiff
 // multibody systems with contact", ACM TOG 2019; Liu and Andrews 2022, section 2. What belongs to one part
 // is schur_part.h's. On the rows of a 3x3 block of D, J is J' along its basis (row_weights.h).
+//
+// Strategies that end near the solution change few weights from one factorisation to the next. Parts without
+// a changed row, and what they leave to the interface, stand as they are; S has the bytes of a whole one.
 #include <algorithm>
-#include <array>
+#include <utility>
 #include <vector>
 
 #include "solver/interface_split.h"
@@ -31,38 +34,39 @@ class SchurRowsKernel : public Kernel {
   int interface_unknowns() const override { return static_cast<int>(split_.cut_rows.size()); }
   double local_mflop() const override;
   double interface_mflop() const override { return interface_.mflop(); }
+  double done_mflop() const override;
 
  private:
-  // A row of S: of the problem, the two parts that meet at it, and its place among their right-hand sides.
-  struct InterfaceRow {
-    int row;
-    std::array<int, 2> part{-1, -1}, right_hand_side{-1, -1};
-  };
-
   void split(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks);
   void count_interface(MemoryCount& memory) const;
   void allocate(ParallelTasks& tasks);
+  bool nothing_stands();
   void assemble(const RowWeights& weights, ParallelTasks& tasks);
   bool factor_parts(ParallelTasks& tasks);
   void form_interface(ParallelTasks& tasks);
   void number_active_rows();
-  void find_right_hand_sides();
   void gather_panel(int p);
+  void gather_part(const SchurPart& part, int first, int end, double* entries) const;
   void solve_interface(std::span<const double> f_r, std::span<double> dlambda);
 
   const PreparedStep* step_ = nullptr;
+  // The last factorisation failed, is not one of this analysis, or had rows turned by blocks.
+  bool changed_all_ = true;
+  long factored_preparation_ = 0;         // of the step
+  std::vector<double> factored_weights_;  // (m)
   WeightedRows rows_;
   InterfaceSplit split_;
-  std::vector<SchurPart> parts_;              // (at least split_.part_count)
-  std::vector<int> row_of_cut_;               // (cut rows) row of S, -1 where D = 0
-  std::vector<InterfaceRow> interface_rows_;  // (size of S)
-  DenseCholesky interface_;                   // S
-  std::vector<double> lambda_;                // (size of S)
+  std::vector<SchurPart> parts_;     // (at least split_.part_count)
+  std::vector<int> row_of_cut_;      // (cut rows) row of S, -1 where D = 0
+  std::vector<int> interface_rows_;  // (size of S) rows of the problem
+  DenseCholesky interface_;          // S
+  std::vector<double> lambda_;       // (size of S)
 };
 
 void SchurRowsKernel::split(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
   step_ = &step;
+  changed_all_ = true;
   split_.split(step, parts.part_of_body);
   // An interface that is too large is known before anything of the parts is.
   MemoryCount memory;
@@ -76,9 +80,10 @@ void SchurRowsKernel::split(const PreparedStep& step, const Parts& parts, Parall
 void SchurRowsKernel::count_interface(MemoryCount& memory) const {
   const std::size_t cut_rows = split_.cut_rows.size();
   DenseCholesky::count(static_cast<int>(cut_rows), memory);
-  memory.add<double>(cut_rows);  // lambda
-  memory.add<int>(cut_rows);     // its row of S
-  memory.add<InterfaceRow>(cut_rows);
+  memory.add<double>(cut_rows);            // lambda
+  memory.add<double>(step_->row_count());  // weights
+  memory.add<int>(cut_rows);               // its row of S
+  memory.add<int>(cut_rows);               // its row of the problem
   memory.add_grown(split_.local_of_body, split_.cut_rows);
   if (step_->set().has_blocks()) memory.add<double>(12, step_->row_count());
   for (int i = 0; i < split_.part_count; ++i) {
@@ -99,6 +104,7 @@ void SchurRowsKernel::allocate(ParallelTasks& tasks) {
     analyzed_all &= parts_[i].is_analyzed();
   }
   tasks.memory().request(memory, analyzed_all);
+  factored_weights_.resize(step_->row_count());
   tasks.run(Stage::analyze, split_.part_count, [&](int i) { parts_[i].allocate(); });
 }
 
@@ -123,7 +129,16 @@ bool SchurRowsKernel::factor(const RowWeights& weights, ParallelTasks& tasks, co
   assemble(weights, tasks);
   if (!factor_parts(tasks)) return false;
   form_interface(tasks);
-  return interface_.factor(tasks);
+  if (!interface_.factor(tasks)) return false;
+  changed_all_ = !weights.blocks.empty();
+  return true;
+}
+
+// Rows in blocks are turned by their bases too, so that equal weights do not say that nothing has changed.
+bool SchurRowsKernel::nothing_stands() {
+  const long preparation = step_->preparations();
+  const bool is_new = std::exchange(factored_preparation_, preparation) != preparation;
+  return std::exchange(changed_all_, true) || is_new;  // true until this factorisation has succeeded
 }
 
 void SchurRowsKernel::assemble(const RowWeights& weights, ParallelTasks& tasks) {
@@ -131,7 +146,8 @@ void SchurRowsKernel::assemble(const RowWeights& weights, ParallelTasks& tasks) 
   rows_.set(step_->problem(), weights);
   if (!weights.blocks.empty())
     tasks.run_over(step_->group_chunks(), [&](const Chunk& groups) { rows_.turn(step_->rows_of(groups)); });
-  tasks.run(split_.part_count, [&](int i) { parts_[i].assemble(rows_); });
+  const bool all = nothing_stands() || !weights.blocks.empty();
+  tasks.run(split_.part_count, [&](int i) { parts_[i].assemble(rows_, all, factored_weights_); });
 }
 
 // False when a pivot is not positive.
@@ -144,7 +160,6 @@ void SchurRowsKernel::form_interface(ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::form_interface);
   number_active_rows();
   tasks.run(split_.part_count, [&](int i) { parts_[i].form_complement(rows_, row_of_cut_); });
-  find_right_hand_sides();
   interface_.resize(static_cast<int>(interface_rows_.size()));
   tasks.run(interface_.panel_count(), [&](int p) { gather_panel(p); });
 }
@@ -154,18 +169,7 @@ void SchurRowsKernel::number_active_rows() {
   for (std::size_t c = 0; c < split_.cut_rows.size(); ++c) {
     const bool active = rows_.d()[split_.cut_rows[c]] > 0;
     row_of_cut_[c] = active ? static_cast<int>(interface_rows_.size()) : -1;
-    if (active) interface_rows_.push_back({split_.cut_rows[c]});
-  }
-}
-
-void SchurRowsKernel::find_right_hand_sides() {
-  for (int i = 0; i < split_.part_count; ++i) {
-    for (int k = 0; const int row : parts_[i].interface_rows()) {
-      InterfaceRow& at = interface_rows_[row];
-      const int side = at.part[0] < 0 ? 0 : 1;
-      at.part[side] = i;
-      at.right_hand_side[side] = k++;
-    }
+    if (active) interface_rows_.push_back(split_.cut_rows[c]);
   }
 }
 
@@ -173,25 +177,30 @@ void SchurRowsKernel::find_right_hand_sides() {
 void SchurRowsKernel::gather_panel(int p) {
   double* entries = interface_.begin_panel(p);
   const int first = kPanelRows * p, end = std::min(interface_.size(), first + kPanelRows);
-  for (int row = first; row < end; ++row) {
-    const InterfaceRow& at = interface_rows_[row];
-    double* s = entries + (row - first);
-    for (int side = 0; side < 2; ++side) {
-      const SchurPart& part = parts_[at.part[side]];
-      for (long l = 0; const int column : part.interface_rows()) {
-        if (column <= row)
-          s[static_cast<long>(kPanelRows) * column] -= part.minus_gram(at.right_hand_side[side], l);
-        ++l;
-      }
-    }
-    s[static_cast<long>(kPanelRows) * row] += 1 / rows_.d()[at.row];
+  for (int i = 0; i < split_.part_count; ++i) gather_part(parts_[i], first, end, entries);
+  for (int row = first; row < end; ++row)
+    entries[row - first + static_cast<long>(kPanelRows) * row] += 1 / rows_.d()[interface_rows_[row]];
+}
+
+// Column by column, as they lie in memory.
+void SchurRowsKernel::gather_part(const SchurPart& part, int first, int end, double* entries) const {
+  const std::span<const int> row_of = part.interface_rows(), sorted = part.by_interface_row();
+  const auto lies_before = [&](int row) {
+    return std::ranges::lower_bound(sorted, row, {}, [&](int k) { return row_of[k]; }) - sorted.begin();
+  };
+  const auto begin = lies_before(first), behind = lies_before(end);
+  if (begin == behind) return;
+  for (const int l : sorted.first(behind)) {
+    double* column = entries + static_cast<long>(kPanelRows) * row_of[l] - first;
+    for (const int k : sorted.subspan(begin, behind - begin))
+      if (row_of[k] >= row_of[l]) column[row_of[k]] -= part.minus_gram(k, l);
   }
 }
 
 // S lambda_c = f_c - sum_i J_ci H_i^-1 g_i
 void SchurRowsKernel::solve_interface(std::span<const double> f_r, std::span<double> dlambda) {
   lambda_.resize(interface_rows_.size());
-  for (std::size_t c = 0; c < lambda_.size(); ++c) lambda_[c] = f_r[interface_rows_[c].row];
+  for (std::size_t c = 0; c < lambda_.size(); ++c) lambda_[c] = f_r[interface_rows_[c]];
   for (int i = 0; i < split_.part_count; ++i) {
     const std::span<const int> rows = parts_[i].interface_rows();
     for (std::size_t k = 0; k < rows.size(); ++k) lambda_[rows[k]] += parts_[i].coupling()[k];
@@ -215,6 +224,12 @@ double SchurRowsKernel::local_mflop() const {
   double flops = 0;
   for (int i = 0; i < split_.part_count; ++i) flops += parts_[i].factor_flops();
   return flops * 1e-6;
+}
+
+double SchurRowsKernel::done_mflop() const {
+  double flops = 0;
+  for (int i = 0; i < split_.part_count; ++i) flops += parts_[i].done_flops();
+  return flops * 1e-6 + interface_.mflop();
 }
 
 }  // namespace

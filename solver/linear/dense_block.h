@@ -28,13 +28,14 @@ inline bool weighted_gram(int rows, const double* jacobian, const double* d, dou
   return dense_tiles().weighted_gram(rows, jacobian, d, h);
 }
 
-// A (6 rows, 6 columns), its first block a diagonal one, <- those columns of the Cholesky factor, with the inverse of every
-// 6x6 diagonal block in the block's place; rows and columns in blocks. False when a pivot is not positive.
+// A (6 rows, 6 columns), its first block a diagonal one, <- those columns of the Cholesky factor, with the
+// inverse of every 6x6 diagonal block in the block's place; rows and columns in blocks. False when a pivot is
+// not positive.
 bool eliminate_columns(int rows, int columns, double* a, int lda);
 
-// y (rows) -= A (rows, columns) x, and x (columns) -= A^T y; whole blocks of columns. Vectors are read two numbers at a time or
-// one, and stored two at a time or four, so that blocks of six that one call has written are read by the next without waiting
-// for memory.
+// y (rows) -= A (rows, columns) x, and x (columns) -= A^T y; whole blocks of columns. Vectors are read two
+// numbers at a time or one, and stored two at a time or four, so that blocks of six that one call has written
+// are read by the next without waiting for memory.
 void subtract_matrix_vector(int rows, int columns, const double* a, int lda, const double* x, double* y);
 void subtract_transpose_vector(int rows, int columns, const double* a, int lda, const double* y, double* x);
 

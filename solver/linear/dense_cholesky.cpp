@@ -64,8 +64,9 @@ void DenseCholesky::resize(int size) {
   }
 }
 
-// A schedule has an operation for every three blocks row >= column >= step; it waits for at most three others. Both lists
-// grow as they are filled. Beyond what an int numbers there is no schedule, whatever memory there is.
+// A schedule has an operation for every three blocks row >= column >= step; it waits for at most three
+// others. Both lists grow as they are filled. Beyond what an int numbers there is no schedule, whatever
+// memory there is.
 void DenseCholesky::count(int size, MemoryCount& memory) {
   const long panels = ceil_div(size, kPanelRows);
   const auto blocks = static_cast<std::uint64_t>(ceil_div(panels, long{kBlockPanels}));

@@ -60,7 +60,8 @@ class DenseCholesky {
     return std::size_t{kPanelRows * kPanelRows / 2} * static_cast<std::size_t>(p * (p + 1));
   }
 
-  // Of all sizes with the same number of blocks; stays once it is there, as the clock of a solve refers to it.
+  // Of all sizes with the same number of blocks; stays once it is there, as the clock of a solve refers to
+  // it.
   struct Schedule {
     explicit Schedule(int blocks);
 

@@ -1,5 +1,5 @@
-// A vector of four doubles in the compiler's own terms, for headers and files that need no instruction by name (vector_lanes.h has
-// those).
+// A vector of four doubles in the compiler's own terms, for headers and files that need no instruction by
+// name (vector_lanes.h has those).
 #pragma once
 
 #include <cstring>

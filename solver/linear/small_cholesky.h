@@ -11,7 +11,8 @@
 
 namespace cleave {
 
-// call(std::integral_constant 0), ..., call(... N - 1): a loop whose every turn the compiler sees with its number.
+// call(std::integral_constant 0), ..., call(... N - 1): a loop whose every turn the compiler sees with its
+// number.
 template <int N, class Call>
 inline void unrolled(const Call& call) {
   [&]<int... K>(std::integer_sequence<int, K...>) { (call(std::integral_constant<int, K>()), ...); }

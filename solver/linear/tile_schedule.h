@@ -6,10 +6,10 @@
 //     solves the blocks below it            L_ik = A_ik L_kk^-T
 //     updates what is right of it           A_ij -= L_ik L_jk^T,    k < j <= i
 //
-// (Golub and Van Loan, Matrix Computations, section 4.2). Only the first columns of blocks may be listed: a panel. The
-// diagonal block that the next step begins with comes first in every step, and its factorisation next, so that it is long
-// done when the solves below it, last in the step, are reached (look-ahead; Strazdins 1998). On any number of threads
-// every block sees the same operations in the same order.
+// (Golub and Van Loan, Matrix Computations, section 4.2). Only the first columns of blocks may be listed: a
+// panel. The diagonal block that the next step begins with comes first in every step, and its factorisation
+// next, so that it is long done when the solves below it, last in the step, are reached (look-ahead;
+// Strazdins 1998). On any number of threads every block sees the same operations in the same order.
 #pragma once
 
 #include <utility>
@@ -17,8 +17,8 @@
 
 namespace cleave {
 
-// What a step does to one block: a diagonal block (row = column = step) is factored, those below it are solved for, all
-// others are updated.
+// What a step does to one block: a diagonal block (row = column = step) is factored, those below it are
+// solved for, all others are updated.
 struct TileOperation {
   int step, row, column;
 };
@@ -30,8 +30,8 @@ class TileSchedule {
 
   // Each comes after all that it needs.
   const std::vector<TileOperation>& operations() const { return operations_; }
-  // Pairs (earlier operation, later operation): the last one on its own block, and those that finished the blocks it
-  // reads.
+  // Pairs (earlier operation, later operation): the last one on its own block, and those that finished the
+  // blocks it reads.
   const std::vector<std::pair<int, int>>& waits() const { return waits_; }
   // Of each operation a place in [0, 1): rows of blocks go round the threads, whatever their number.
   double place(int operation) const;

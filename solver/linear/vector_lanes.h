@@ -1,7 +1,8 @@
-// Vectors of 2, 4 or 8 doubles: what the tiles of dense algebra are made of. To be included only by files whose
-// instruction set is known: one each (dense_tiles_avx2.cpp, dense_tiles_avx512.cpp) or that of the whole program, which has the
-// first four lanes (dense_block.cpp, block_substitution.cpp, block_matrix.cpp). Everything here is local to the file that includes it,
-// so that no instruction of one set ends up in the other.
+// Vectors of 2, 4 or 8 doubles: what the tiles of dense algebra are made of. To be included only by files
+// whose instruction set is known: one each (dense_tiles_avx2.cpp, dense_tiles_avx512.cpp) or that of the
+// whole program, which has the first four lanes (dense_block.cpp, block_substitution.cpp, block_matrix.cpp).
+// Everything here is local to the file that includes it, so that no instruction of one set ends up in the
+// other.
 //
 // Multiply-adds are always fused and always written out: the compiler does not decide where one is rounded.
 #pragma once
@@ -54,7 +55,8 @@ inline Vector<Lanes> load(const double* p) {
   return VectorOf<Lanes>::load(p);
 }
 
-// Four numbers of which two and two may have been stored just now: a load that is not within one store waits for memory.
+// Four numbers of which two and two may have been stored just now: a load that is not within one store waits
+// for memory.
 inline Vector<4> load_halves(const double* p) {
   return _mm256_insertf128_pd(_mm256_castpd128_pd256(_mm_loadu_pd(p)), _mm_loadu_pd(p + 2), 1);
 }

@@ -17,10 +17,12 @@ using Eigen::Vector3d;
 constexpr int kMostRows = 2000;
 // Two steps take about as long as an iteration of the interior point and its back-substitutions.
 constexpr int kStepsAnIteration = 2;
-// Of 87 steps of Chain Drop that come right here 78 take no more than these; all are for when both starts have had them.
+// Of 87 steps of Chain Drop that come right here 78 take no more than these; all are for when both starts
+// have had them.
 constexpr long kFewSteps = 50;
 constexpr int kMostHalvings = 12;
-// Of 30 steps of scripts/coulomb_peers that all else leaves unsolved, 25 are solved with so many and 18 with one.
+// Of 30 steps of scripts/coulomb_peers that all else leaves unsolved, 25 are solved with so many and 18 with
+// one.
 constexpr std::size_t kRememberedEnergies = 5;
 constexpr double kLeastFall = 2e-4;  // of the energy, in units of the step's length
 constexpr int kCorrections = 2;      // of what rounding did to a step
@@ -197,7 +199,8 @@ double AlartCurnier::move(SolveState& state, double length) {
   return find_error(state);
 }
 
-// All of the step, or the first of its halves, quarters, ... whose energy is below the limit, or else all. Returns the energy.
+// All of the step, or the first of its halves, quarters, ... whose energy is below the limit, or else all.
+// Returns the energy.
 double AlartCurnier::take_step(SolveState& state, double energy_limit) {
   impulse_before_ = state.impulse;
   for (int k = 0; k <= kMostHalvings; ++k) {

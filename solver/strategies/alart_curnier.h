@@ -1,23 +1,24 @@
-// The last attempt under Coulomb's law: a semi-smooth Newton method on the law itself, without de Saxce's shift, and without the
-// symmetry that the kernels' factor needs.
+// The last attempt under Coulomb's law: a semi-smooth Newton method on the law itself, without de Saxce's
+// shift, and without the symmetry that the kernels' factor needs.
 //
-// Of a contact with impulse (n, t), slack (w_n, w_t) and rho the inverse of its diagonal, the law is F = 0 with
+// Of a contact with impulse (n, t), slack (w_n, w_t) and rho the inverse of its diagonal, the law is F = 0
+// with
 //
 //     F_n = n - max(0, n - rho w_n),    F_t = t - P_D(t - rho w_t),   D = { |t| <= mu max(0, n - rho w_n) },
 //
-// of any other row F = lambda - clamp(lambda - rho w). With P' the derivative of what is projected, a contact's block of it
-// unsymmetric where it slides, a step solves
+// of any other row F = lambda - clamp(lambda - rho w). With P' the derivative of what is projected, a
+// contact's block of it unsymmetric where it slides, a step solves
 //
 //     (I - P' + P' rho C) dlambda + P' rho J dv = -F,    M dv = J^T dlambda.
 //
-// Eliminating dlambda leaves (M + J^T E J) dv = -J^T g with E = G^-1 P' rho, g = G^-1 F, G = I - P' + P' rho C, a sparse
-// matrix of body blocks for LU. Steps are halved until the energy sum F^2 / rho falls below the greatest of the last few, so
-// that it may rise in between.
+// Eliminating dlambda leaves (M + J^T E J) dv = -J^T g with E = G^-1 P' rho, g = G^-1 F, G = I - P' + P' rho
+// C, a sparse matrix of body blocks for LU. Steps are halved until the energy sum F^2 / rho falls below the
+// greatest of the last few, so that it may rise in between.
 //
-// A factorisation takes several times as long as a kernel's, and a hundred may be needed, so it comes after all else.
-// Sources: Alart and Curnier, "A mixed formulation for frictional contact problems prone to Newton like solution methods",
-// Comput. Methods Appl. Mech. Eng. 92, 1991; Grippo, Lampariello and Lucidi, "A nonmonotone line search technique for Newton's
-// method", SIAM J. Numer. Anal. 23, 1986.
+// A factorisation takes several times as long as a kernel's, and a hundred may be needed, so it comes after
+// all else. Sources: Alart and Curnier, "A mixed formulation for frictional contact problems prone to Newton
+// like solution methods", Comput. Methods Appl. Mech. Eng. 92, 1991; Grippo, Lampariello and Lucidi, "A
+// nonmonotone line search technique for Newton's method", SIAM J. Numer. Anal. 23, 1986.
 #pragma once
 
 #include <Eigen/LU>
@@ -32,16 +33,17 @@ namespace cleave {
 
 class AlartCurnier {
  public:
-  // From zero impulses and then from those of the step before, a few steps from each and then all of them, until the residual is
-  // within the limit. The impulses of the least residual stay, the present ones included. False where none is within it, or where
-  // the problem is none for it: more rows than LU is worth its time for, turned boxes, or cones without the law. What LU needs is
-  // not in the predicted memory.
+  // From zero impulses and then from those of the step before, a few steps from each and then all of them,
+  // until the residual is within the limit. The impulses of the least residual stay, the present ones
+  // included. False where none is within it, or where the problem is none for it: more rows than LU is worth
+  // its time for, turned boxes, or cones without the law. What LU needs is not in the predicted memory.
   bool run(SolveState& state, std::span<const double> warm_impulse);
 
  private:
   using Matrix = Eigen::SparseMatrix<double>;
 
-  // The rows of a contact, or another row by itself. Vectors of a block have three entries, zero beyond its rows.
+  // The rows of a contact, or another row by itself. Vectors of a block have three entries, zero beyond its
+  // rows.
   struct Block {
     Eigen::Vector3d load(std::span<const double> x) const;
     void store(const Eigen::Vector3d& value, std::span<double> x) const;

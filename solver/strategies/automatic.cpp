@@ -7,9 +7,10 @@ namespace {
 
 // Block pivoting rarely cycles above this ratio and rarely ends below it on redundant contact.
 constexpr double kPivotCompliance = 1e-3;
-// Below it pivoting is fast all the same where impulses of the step before leave no more than this residual, in units of the velocity
-// scale. Over steps of chains, a tower and piles (cfm 1e-5 to 1e-8) pivot took 0.3 to 0.8 of the interior point's time up to it (as long
-// where one factorisation was enough for both), and above it, handing over most steps, 1.0 to 1.4.
+// Below it pivoting is fast all the same where impulses of the step before leave no more than this residual,
+// in units of the velocity scale. Over steps of chains, a tower and piles (cfm 1e-5 to 1e-8) pivot took 0.3
+// to 0.8 of the interior point's time up to it (as long where one factorisation was enough for both), and
+// above it, handing over most steps, 1.0 to 1.4.
 constexpr double kWarmResidual = 0.03;
 
 }  // namespace

@@ -2,11 +2,11 @@
 // sees.
 //
 //   pivot           pivot, then interior-point when the violations stop falling
-//   auto            a cone or a turned box: interior-point, the only one that takes them;
-//                   all rows bilateral: pivot (its first factorisation is the answer);
-//                   otherwise by the scaled compliance C_r / d_r, which bounds how nearly redundant rows may
-//                   become dependent: pivot above kPivotCompliance; below it interior-point, with newton and
-//                   pivot as nets, unless the present impulses are nearly right: then pivot, with the others as nets
+//   auto            a cone or a turned box: interior-point, the only one that takes them; all rows bilateral:
+//                   pivot (its first factorisation is the answer); otherwise by the scaled compliance C_r /
+//                   d_r, which bounds how nearly redundant rows may become dependent: pivot above
+//                   kPivotCompliance; below it interior-point, with newton and pivot as nets, unless the
+//                   present impulses are nearly right: then pivot, with the others as nets
 //   anything else   itself alone
 #pragma once
 

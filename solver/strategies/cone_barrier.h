@@ -1,12 +1,14 @@
-// The barrier of friction cones: for contacts with a cone (cone.h) what interval_barrier.h is for rows with bounds.
+// The barrier of friction cones: for contacts with a cone (cone.h) what interval_barrier.h is for rows with
+// bounds.
 //
-// With S = diag(mu, 1, 1) the slack s = S lambda and the multiplier z, w = S z, are points of the second-order cone
-// Q = { x: |x_t| <= x_n }, and with x o y = (x . y, x_n y_t + y_n x_t) the conditions are
+// With S = diag(mu, 1, 1) the slack s = S lambda and the multiplier z, w = S z, are points of the
+// second-order cone Q = { x: |x_t| <= x_n }, and with x o y = (x . y, x_n y_t + y_n x_t) the conditions are
 //
 //     J v + C lambda - b - S z = 0,    s = S lambda,    s o z = mu e -> 0,   e = (1, 0, 0).
 //
-// The Nesterov-Todd scaling W makes both one point, l = W z = W^-T s. A contact keeps W, its inverse and l, and s and z only
-// as what follows from them: near the surface of Q, s_n - |s_t| has no digits left in s. Scaled, a direction is
+// The Nesterov-Todd scaling W makes both one point, l = W z = W^-T s. A contact keeps W, its inverse and l,
+// and s and z only as what follows from them: near the surface of Q, s_n - |s_t| has no digits left in s.
+// Scaled, a direction is
 //
 //     ds~ = W^-T (S dlambda + gap),  gap = S lambda - s,     dz~ = q - ds~,   l o q = c,
 //
@@ -14,13 +16,14 @@
 //
 //     D^-1 = C + X X^T,  X = S W^-1,     f_r = -w + X (l + q - W^-T gap).
 //
-// After a step a, l + a ds~ and l + a dz~ are well inside Q, and with V their own scaling W <- V W, l <- V (l + a dz~).
-// A contact counts as one product, s . z = l . l. Sources: Nesterov and Todd, "Self-scaled barriers and interior-point
-// methods for convex programming", Math. Oper. Res. 22, 1997; Vandenberghe, "The CVXOPT linear and quadratic cone program
-// solvers", 2010, section 4.3 (the update).
+// After a step a, l + a ds~ and l + a dz~ are well inside Q, and with V their own scaling W <- V W, l <- V (l
+// + a dz~). A contact counts as one product, s . z = l . l. Sources: Nesterov and Todd, "Self-scaled barriers
+// and interior-point methods for convex programming", Math. Oper. Res. 22, 1997; Vandenberghe, "The CVXOPT
+// linear and quadratic cone program solvers", 2010, section 4.3 (the update).
 //
-// With one tangent the third entry of every vector stays zero. Contacts are taken four at a time (cone_lanes.h); where fewer
-// are left in a range of rows, the other lanes hold l = e, W = 1 and zeros, which add nothing.
+// With one tangent the third entry of every vector stays zero. Contacts are taken four at a time
+// (cone_lanes.h); where fewer are left in a range of rows, the other lanes hold l = e, W = 1 and zeros, which
+// add nothing.
 #pragma once
 
 #include <span>
@@ -35,11 +38,12 @@ namespace cleave {
 
 class ConeBarrier {
  public:
-  // Slacks and multipliers inside Q; speed (m): what d s and z of a contact are at least, m/s, on its normal row.
+  // Slacks and multipliers inside Q; speed (m): what d s and z of a contact are at least, m/s, on its normal
+  // row.
   void start(SolveState& state, std::span<const double> speed);
 
-  // inverse_weight (m): the compliance that is factored in, 1 / D along state.cone_blocks() out. Fixes W and gap for the
-  // directions that follow.
+  // inverse_weight (m): the compliance that is factored in, 1 / D along state.cone_blocks() out. Fixes W and
+  // gap for the directions that follow.
   void weigh(SolveState& state, std::span<double> inverse_weight);
 
   // As IntervalBarrier's.

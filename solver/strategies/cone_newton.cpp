@@ -16,17 +16,17 @@ using Eigen::Vector3d;
 constexpr int kMostSteps = 8;
 constexpr double kLeastFall = 0.5;  // of the least residual in a step that is worth the next
 
-// Under Coulomb's law, where steps from afar change the energy little until the last few square it: given up where it does not
-// fall to this share in so many steps.
+// Under Coulomb's law, where steps from afar change the energy little until the last few square it: given up
+// where it does not fall to this share in so many steps.
 constexpr int kMostLawSteps = 30, kMostHalvings = 8, kMostSolves = 12;
 constexpr std::size_t kWatchedSteps = 3;
 constexpr double kLeastEnergyFall = 0.25;
 
-// By the least C_r / d_r: the residual in units of the velocity scale from where steps were seen to converge, and how many of
-// them in a row may bring no new least. On piles of 200 and 600 rocks a tenth of these residuals took 13 % more time at cfm 1e-4
-// and 3 to 6 % more at 1e-12 and 1e-14; in between ten times as much saved no factorisation. The first step may raise the residual
-// a thousandfold before the next ones bring it down: to give up there cost up to three quarters more factorisations where rows are
-// soft.
+// By the least C_r / d_r: the residual in units of the velocity scale from where steps were seen to converge,
+// and how many of them in a row may bring no new least. On piles of 200 and 600 rocks a tenth of these
+// residuals took 13 % more time at cfm 1e-4 and 3 to 6 % more at 1e-12 and 1e-14; in between ten times as
+// much saved no factorisation. The first step may raise the residual a thousandfold before the next ones
+// bring it down: to give up there cost up to three quarters more factorisations where rows are soft.
 struct Attempt {
   double least_compliance, first_residual;
   int most_without_fall;
@@ -39,8 +39,8 @@ const Attempt& attempt_at(double least_compliance) {
                        [&](const Attempt& attempt) { return least_compliance >= attempt.least_compliance; });
 }
 
-// The derivative of the projection on a cone: orthonormal eigenvectors, of which a contact with one tangent has the first two,
-// and their eigenvalues.
+// The derivative of the projection on a cone: orthonormal eigenvectors, of which a contact with one tangent
+// has the first two, and their eigenvalues.
 struct Derivative {
   std::array<Vector3d, 3> vector{Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
   std::array<double, 3> theta{};
@@ -71,7 +71,8 @@ void over_rows(SolveState& state, const Task& task) {
 
 }  // namespace
 
-// Weights of rows with bounds; theta = 0 sets the impulse to its bound. The rows of cones are linearize_cone's.
+// Weights of rows with bounds; theta = 0 sets the impulse to its bound. The rows of cones are
+// linearize_cone's.
 void ConeNewton::linearize_rows(SolveState& state, int first, int last) const {
   const StepProblem& problem = state.step->problem();
   const std::span<const double> d = state.step->diagonal();
@@ -149,7 +150,8 @@ ImpulseSet::Misses ConeNewton::misses(SolveState& state) {
   return {largest, std::accumulate(chunk_energy_.begin(), chunk_energy_.end(), 0.0)};
 }
 
-// All of the step, or under Coulomb's law the first of its halves, quarters, ... that lowers the energy. Returns the residual.
+// All of the step, or under Coulomb's law the first of its halves, quarters, ... that lowers the energy.
+// Returns the residual.
 double ConeNewton::take_step(SolveState& state) {
   state.update_velocity_and_shift();
   ImpulseSet::Misses after = misses(state);

@@ -1,26 +1,30 @@
-// The semi-smooth Newton method that ends the interior point where contacts have cones, whose curved surface leaves no active
-// set to read off.
+// The semi-smooth Newton method that ends the interior point where contacts have cones, whose curved surface
+// leaves no active set to read off.
 //
-// The conditions of all rows are F = lambda - P(lambda - w / d) = 0, with P the nearest point of the impulse set. The derivative
-// of P at p = lambda - w / d is symmetric; its eigenvectors e and eigenvalues theta are, with u = p_t / |p_t|,
+// The conditions of all rows are F = lambda - P(lambda - w / d) = 0, with P the nearest point of the impulse
+// set. The derivative of P at p = lambda - w / d is symmetric; its eigenvectors e and eigenvalues theta are,
+// with u = p_t / |p_t|,
 //
 //     a row with bounds      theta = 1 between them, 0 beyond
 //     a cone, p inside       theta = 1;   P(p) = 0: theta = 0
-//     a cone, p outside      theta = 1 along (1, mu u), mu P_n / |p_t| across u in the tangent plane, 0 along (mu, -u)
+//     a cone, p outside      theta = 1 along (1, mu u), mu P_n / |p_t| across u in the tangent plane, 0 along
+//                            (mu, -u)
 //
-// Along e, a Newton step asks (1 - theta) dlambda_e + theta dw_e / d = -F_e. Directions of theta = 0 are moved by -F_e at once
-// (w then becomes w'), which leaves for the others rows of the kernel's system,
+// Along e, a Newton step asks (1 - theta) dlambda_e + theta dw_e / d = -F_e. Directions of theta = 0 are
+// moved by -F_e at once (w then becomes w'), which leaves for the others rows of the kernel's system,
 //
 //     D_e^-1 = C + d (1 - theta) / theta,    f_e = -d F_e / theta - (w' - w)_e,
 //
 // exact where the rows of a contact have one compliance.
 //
-// Under Coulomb's law w_n + mu |w_t| takes the place of w_n, with the change of mu |w_t| along the step (step_shift.h). Its steps
-// are halved until the energy sum_r d_r F_r^2 falls (of a contact its largest F). On piles that are not stiff it mostly converges
-// from the impulses of the step before, on others from where the interior point stalls.
+// Under Coulomb's law w_n + mu |w_t| takes the place of w_n, with the change of mu |w_t| along the step
+// (step_shift.h). Its steps are halved until the energy sum_r d_r F_r^2 falls (of a contact its largest F).
+// On piles that are not stiff it mostly converges from the impulses of the step before, on others from where
+// the interior point stalls.
 //
-// Source: Qi and Sun, "A nonsmooth version of Newton's method", Math. Program. 58, 1993; the derivative: Fukushima, Luo and
-// Tseng, "Smoothing functions for second-order-cone complementarity problems", SIAM J. Optim. 12, 2002.
+// Source: Qi and Sun, "A nonsmooth version of Newton's method", Math. Program. 58, 1993; the derivative:
+// Fukushima, Luo and Tseng, "Smoothing functions for second-order-cone complementarity problems", SIAM J.
+// Optim. 12, 2002.
 #pragma once
 
 #include <vector>
@@ -32,11 +36,13 @@ namespace cleave {
 
 class ConeNewton {
  public:
-  // Steps from the present impulses until the residual is at most `target` (m/s) or falls too slowly. Each back-substitution
-  // counts as a refinement. Returns the least residual, whose impulses stay, with the shift of their velocities.
+  // Steps from the present impulses until the residual is at most `target` (m/s) or falls too slowly. Each
+  // back-substitution counts as a refinement. Returns the least residual, whose impulses stay, with the shift
+  // of their velocities.
   double run(SolveState& state, double target);
 
-  // Where an attempt is worth its factorisations: the residual in units of the velocity scale, by the least C_r / d_r.
+  // Where an attempt is worth its factorisations: the residual in units of the velocity scale, by the least
+  // C_r / d_r.
   static double first_residual(double least_compliance);
 
  private:

@@ -1,13 +1,15 @@
 // Coulomb's law in the Newton direction of a cone: the change of its shift.
 //
-// Under the law a cone's normal slack is raised by s = mu |w_t| (de Saxce and Feng 1998), which moves with the velocities. The
-// exact derivative is not symmetric and no kernel factors it; but for a given change ds the direction is that of a cone, one
-// back-substitution, and it leads to tangential velocities w_t + dw_t. What is wanted is the fixed point
+// Under the law a cone's normal slack is raised by s = mu |w_t| (de Saxce and Feng 1998), which moves with
+// the velocities. The exact derivative is not symmetric and no kernel factors it; but for a given change ds
+// the direction is that of a cone, one back-substitution, and it leads to tangential velocities w_t + dw_t.
+// What is wanted is the fixed point
 //
 //     ds = mu |w_t + dw_t(ds)| - s,
 //
-// found with Anderson's acceleration over the last few ds, which is GMRES where the map is linear. Sources: Anderson, "Iterative
-// procedures for nonlinear integral equations", J. ACM 12, 1965; Walker and Ni, SIAM J. Numer. Anal. 49, 2011.
+// found with Anderson's acceleration over the last few ds, which is GMRES where the map is linear. Sources:
+// Anderson, "Iterative procedures for nonlinear integral equations", J. ACM 12, 1965; Walker and Ni, SIAM J.
+// Numer. Anal. 49, 2011.
 #pragma once
 
 #include <Eigen/Core>
@@ -32,8 +34,8 @@ class CoulombShift {
   // f_r of the cones' normal rows -= ds.
   void subtract_change(std::span<const FrictionCone> cones, std::span<double> f_r) const;
 
-  // wanted (cones): the change that the direction of change() leads to. Makes the next change; returns how far the two were
-  // apart, m/s, at most.
+  // wanted (cones): the change that the direction of change() leads to. Makes the next change; returns how
+  // far the two were apart, m/s, at most.
   double improve(std::span<const double> wanted);
 
  private:

@@ -1,9 +1,9 @@
 // How the interior-point iteration ends: attempts at an answer from impulses that are nearly right.
 //
-// Of bounds the active set can be read off once the error is small (s against z), and an exact solve on that set has the
-// accuracy of a pivoting method. Cones have no such set; the semi-smooth Newton method of cone_newton.h ends their iteration. Under
-// Coulomb's law that may come nearer than the iteration itself and still not be there: the nearest is kept, and the method of
-// alart_curnier.h comes last.
+// Of bounds the active set can be read off once the error is small (s against z), and an exact solve on that
+// set has the accuracy of a pivoting method. Cones have no such set; the semi-smooth Newton method of
+// cone_newton.h ends their iteration. Under Coulomb's law that may come nearer than the iteration itself and
+// still not be there: the nearest is kept, and the method of alart_curnier.h comes last.
 #pragma once
 
 #include <limits>
@@ -32,8 +32,8 @@ class InteriorEnd {
   // From the best iterate; on failure the present impulses are restored.
   bool attempt_from_best(SolveState& state, const InteriorIterate& iterate);
 
-  // When the iteration has ended: where its best impulses are not within the limit, what an attempt came nearer with, or comes
-  // with now.
+  // When the iteration has ended: where its best impulses are not within the limit, what an attempt came
+  // nearer with, or comes with now.
   bool last_resort(SolveState& state);
 
  private:

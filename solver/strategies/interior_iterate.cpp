@@ -7,8 +7,9 @@
 namespace cleave {
 namespace {
 
-// With cones. A second correction saves a factorisation in forty and takes more time than that: on piles of 200 and 600 rocks with
-// cfm 1e-6 to 1e-8 steps took 2 to 5 % less without it. Coulomb's law keeps it: two piles of the tests are not solved otherwise.
+// With cones. A second correction saves a factorisation in forty and takes more time than that: on piles of
+// 200 and 600 rocks with cfm 1e-6 to 1e-8 steps took 2 to 5 % less without it. Coulomb's law keeps it: two
+// piles of the tests are not solved otherwise.
 constexpr int kConeCorrections = 1;
 
 }  // namespace
@@ -44,8 +45,8 @@ void InteriorIterate::start_rows(SolveState& state, double inside) {
   barrier_.start(state, row_speed_);
 }
 
-// Rows beside the kernel's analysis, if that is still to be done: it needs none of their values. Cones come after it, in tasks of their
-// own, of which a task can have none.
+// Rows beside the kernel's analysis, if that is still to be done: it needs none of their values. Cones come
+// after it, in tasks of their own, of which a task can have none.
 void InteriorIterate::start(SolveState& state, double inside) {
   is_to_be_kept_ = false;
   row_error_.resize(state.slack.size());

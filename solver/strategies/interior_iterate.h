@@ -2,13 +2,15 @@
 //
 //     min 1/2 lambda^T (J M^-1 J^T + C) lambda - (b - J v0)^T lambda,   lo <= lambda <= hi;
 //
-// contacts with a cone have |lambda_t| <= mu lambda_n in place of bounds. Slacks and multipliers of the bounds, their part of D
-// and of the right-hand side are interval_barrier.h's, those of the cones cone_barrier.h's; this file chooses what their products
-// aim at and how far to step. D_r = 1 / (max(C_r, delta d_r) + sum z / s), where delta keeps D of rows with next to no compliance
-// within what double precision can factor; as residuals are those of C, it changes the way and not the end. Source:
-// Mehrotra, "On the implementation of a primal-dual interior point method", SIAM J. Optim. 2, 1992; Gondzio, "Multiple centrality
-// corrections in a primal-dual method for linear programming", Comput. Optim. Appl. 6, 1996; Friedlander and Orban, "A primal-dual
-// regularized interior-point method for convex quadratic programs", Math. Program. Comput. 4, 2012.
+// contacts with a cone have |lambda_t| <= mu lambda_n in place of bounds. Slacks and multipliers of the
+// bounds, their part of D and of the right-hand side are interval_barrier.h's, those of the cones
+// cone_barrier.h's; this file chooses what their products aim at and how far to step. D_r = 1 / (max(C_r,
+// delta d_r) + sum z / s), where delta keeps D of rows with next to no compliance within what double
+// precision can factor; as residuals are those of C, it changes the way and not the end. Source: Mehrotra,
+// "On the implementation of a primal-dual interior point method", SIAM J. Optim. 2, 1992; Gondzio, "Multiple
+// centrality corrections in a primal-dual method for linear programming", Comput. Optim. Appl. 6, 1996;
+// Friedlander and Orban, "A primal-dual regularized interior-point method for convex quadratic programs",
+// Math. Program. Comput. 4, 2012.
 //
 // Rows are those along the axes of the impulse set (impulse_set.h): for a turned box the kernel gets the same
 // D as a 3x3 block.
@@ -30,7 +32,8 @@ class InteriorIterate {
 
   explicit InteriorIterate(const InteriorConstants& constants) : constants_(constants), barrier_(constants) {}
 
-  // Impulses moved inside their bounds, slacks and multipliers to them. inside: factor of the products s z that they start with.
+  // Impulses moved inside their bounds, slacks and multipliers to them. inside: factor of the products s z
+  // that they start with.
   void start(SolveState& state, double inside = 1);
 
   // Factors the Newton system; false when the kernel finds a non-positive pivot.
@@ -40,8 +43,8 @@ class InteriorIterate {
   // products to first order. One back-substitution each.
   void find_direction(SolveState& state, Aim aim);
 
-  // Turns the direction into one of Coulomb's law (coulomb_shift.h): back-substitutions until the shift that it was found with
-  // and the one that it leads to differ by less than `tolerance`, m/s, or `most` of them.
+  // Turns the direction into one of Coulomb's law (coulomb_shift.h): back-substitutions until the shift that
+  // it was found with and the one that it leads to differ by less than `tolerance`, m/s, or `most` of them.
   void match_shift(SolveState& state, double tolerance, int most);
 
   // The largest residual of the direction in the rows of its own system, m/s: what rounding did to it.
@@ -56,8 +59,9 @@ class InteriorIterate {
   double mean_product(double step) const;  // of s z, after such a step
   void advance(SolveState& state, double step);
 
-  // The largest violation of the conditions as a velocity (m/s): of the equation in w, and min(d s, z). With cones the
-  // residual, because their s and z may round more than the impulses do. Of the last start, advance or restore.
+  // The largest violation of the conditions as a velocity (m/s): of the equation in w, and min(d s, z). With
+  // cones the residual, because their s and z may round more than the impulses do. Of the last start, advance
+  // or restore.
   double error() const { return error_; }
 
   // A row is at a bound where the multiplier outweighs the slack, else free.

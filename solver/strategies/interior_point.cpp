@@ -1,18 +1,20 @@
 // Strategy `interior-point`: Mehrotra's predictor-corrector on the box-constrained quadratic programme of the
 // step, with Gondzio's centrality corrections (equations in interior_iterate.h). One factorisation an
-// iteration and two back-substitutions; a third where Mehrotra's direction is poor, and up to two corrections (with cones
-// one) where bounds cut the step short. On 200 rocks a back-substitution costs a fifth of assembly and
-// factorisation, on more of them less; the corrections save a sixth of the iterations.
+// iteration and two back-substitutions; a third where Mehrotra's direction is poor, and up to two corrections
+// (with cones one) where bounds cut the step short. On 200 rocks a back-substitution costs a fifth of
+// assembly and factorisation, on more of them less; the corrections save a sixth of the iterations.
 //
-// Once the error is small an exact solve ends the iteration (interior_end.h). Where that finds no answer yet, the iteration goes
-// on, and where rounding keeps it from ever finding one, the best interior iterate is the answer if it is within the limit.
+// Once the error is small an exact solve ends the iteration (interior_end.h). Where that finds no answer yet,
+// the iteration goes on, and where rounding keeps it from ever finding one, the best interior iterate is the
+// answer if it is within the limit.
 //
-// Cones of very different masses, or of a large mu, may stop the first steps short and leave products that no direction brings back
-// to the centre. Such an iteration begins anew, further inside and with shorter steps.
+// Cones of very different masses, or of a large mu, may stop the first steps short and leave products that no
+// direction brings back to the centre. Such an iteration begins anew, further inside and with shorter steps.
 //
-// Under Coulomb's law every direction is that of the law (coulomb_shift.h). The problem is then not convex, and the iteration may
-// stall where the exact solve does not: that is tried before the first iteration, from the impulses of the step before, and
-// again where iterations make no progress. Where all of it fails, status and residual say so.
+// Under Coulomb's law every direction is that of the law (coulomb_shift.h). The problem is then not convex,
+// and the iteration may stall where the exact solve does not: that is tried before the first iteration, from
+// the impulses of the step before, and again where iterations make no progress. Where all of it fails, status
+// and residual say so.
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -25,24 +27,25 @@
 namespace cleave {
 namespace {
 
-// Of the change of Coulomb's shift in a direction: how exact, in units of the error that the direction is to remove, and the
-// most back-substitutions for it.
+// Of the change of Coulomb's shift in a direction: how exact, in units of the error that the direction is to
+// remove, and the most back-substitutions for it.
 constexpr double kShiftAccuracy = 0.1;
 constexpr int kMostShifts = 8;
 
-// Further attempts at the end under Coulomb's law: at this share of the error of the one before; after so many iterations without
-// progress, and again where the error is this share of the last attempt's.
+// Further attempts at the end under Coulomb's law: at this share of the error of the one before; after so
+// many iterations without progress, and again where the error is this share of the last attempt's.
 constexpr double kNextLawPolish = 0.1;
 constexpr int kStalledIterations = 5;
 constexpr double kNextStalledPolish = 0.5;
-// So many without progress, and the iteration ends. Of 490 steps of Rock Pile and 49 of Large Rock Pile those that came right had at
-// most ten.
+// So many without progress, and the iteration ends. Of 490 steps of Rock Pile and 49 of Large Rock Pile those
+// that came right had at most ten.
 constexpr int kHopelessIterations = 20;
 
-// With cones: so many steps in a row below this length, and the iteration begins anew with products of so many times the energy and
-// with this share of the way to the boundary. Two to four boxes with masses in ratios of 1e5 and 1e6 that spin are solved in some 30
-// iterations then and were not in 100. Of 240 random problems (mu up to 1000, compliances down to 0) 191 are solved and were 177, all
-// of those among them; after 5 short steps two of these were lost, 12 take more factorisations.
+// With cones: so many steps in a row below this length, and the iteration begins anew with products of so
+// many times the energy and with this share of the way to the boundary. Two to four boxes with masses in
+// ratios of 1e5 and 1e6 that spin are solved in some 30 iterations then and were not in 100. Of 240 random
+// problems (mu up to 1000, compliances down to 0) 191 are solved and were 177, all of those among them; after
+// 5 short steps two of these were lost, 12 take more factorisations.
 constexpr int kMostShortSteps = 8;
 constexpr double kShortStep = 0.05;
 constexpr double kFurtherInside = 3e4, kCarefulFraction = 0.9;
@@ -125,8 +128,8 @@ void InteriorPoint::step(SolveState& state, double error) {
 }
 
 // Keeps the best iterate. Finished: within the limit, and no better for a while. Rounding: full steps, but a
-// growing error. The error of cones does not see that the start is inside them where the impulses are not: impulses of the step
-// before may be better than the first iterates, which are none the worse for it.
+// growing error. The error of cones does not see that the start is inside them where the impulses are not:
+// impulses of the step before may be better than the first iterates, which are none the worse for it.
 InteriorPoint::Progress InteriorPoint::watch(const SolveState& state, double error) {
   const bool is_start = std::exchange(is_start_, false);
   if (error < best_error_) {
@@ -162,7 +165,8 @@ void InteriorPoint::begin(SolveState& state) {
   last_polish_ = std::numeric_limits<double>::infinity();
 }
 
-// Under Coulomb's law: no progress since iterations, and since the last attempt at the end so much that another may go elsewhere.
+// Under Coulomb's law: no progress since iterations, and since the last attempt at the end so much that
+// another may go elsewhere.
 bool InteriorPoint::is_stalled() const {
   return has_coulomb_ && since_best_ == kStalledIterations &&
          best_error_ <= kNextStalledPolish * last_polish_;

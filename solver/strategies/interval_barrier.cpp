@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kLanes = 4;  // running values side by side, for vector instructions
 
-// By value: std::max and std::min choose between addresses, which keeps loops from becoming vector instructions.
+// By value: std::max and std::min choose between addresses, which keeps loops from becoming vector
+// instructions.
 double greater(double a, double b) { return a < b ? b : a; }
 double lesser(double a, double b) { return b < a ? b : a; }
 

@@ -14,8 +14,9 @@
 //
 //     D_r = 1 / (C_r + sum z / s),   f_r = -w + sum sigma (z + (c - z gap) / s).
 //
-// Lower and upper bounds are a side each, with a place for every row, so that loops over them are vector instructions without
-// gathering. Where a row has no such bound its place holds s = 1 and zeros, which add nothing. Who calls deals out the rows.
+// Lower and upper bounds are a side each, with a place for every row, so that loops over them are vector
+// instructions without gathering. Where a row has no such bound its place holds s = 1 and zeros, which add
+// nothing. Who calls deals out the rows.
 //
 // Rows whose bounds coincide are fixed, with D = 0.
 #pragma once
@@ -38,7 +39,8 @@ struct BarrierCourse {
   double product[3] = {};
 };
 
-// The same of the rows of a chunk: the inverse of that step, at least 1, so that variables which do not fall need no infinity.
+// The same of the rows of a chunk: the inverse of that step, at least 1, so that variables which do not fall
+// need no infinity.
 struct ChunkCourse {
   double inverse_step = 1;
   double product[3] = {};
@@ -53,24 +55,25 @@ class IntervalBarrier {
   // are at least, m/s.
   void start(SolveState& state, std::span<const double> speed);
 
-  // Of these rows, state.weight: the compliance that is factored in, D out; on the rows of cones 1 / D in. Fixes s, z and
-  // gap for the directions that follow.
+  // Of these rows, state.weight: the compliance that is factored in, D out; on the rows of cones 1 / D in.
+  // Fixes s, z and gap for the directions that follow.
   void weigh(SolveState& state, int first, int last);
 
-  // Of these rows: products s z that the direction aims at, less the second-order term of the last direction or not, and
-  // state.f_r for it.
+  // Of these rows: products s z that the direction aims at, less the second-order term of the last direction
+  // or not, and state.f_r for it.
   void aim(SolveState& state, int first, int last, double product, bool second_order);
   void right_hand_side(SolveState& state, int first, int last) const;  // state.f_r anew
   // ds and dz from state.dlambda; returns where they lead.
   ChunkCourse follow(const SolveState& state, int first, int last);
 
-  // After swap_directions, of these rows: aims products that a step of `trial` would leave outside of [low, high] back at it,
-  // with state.f_r.
+  // After swap_directions, of these rows: aims products that a step of `trial` would leave outside of [low,
+  // high] back at it, with state.f_r.
   void correct(SolveState& state, int first, int last, double trial, double low, double high);
   void swap_directions();  // with the direction from before
 
   void advance(SolveState& state, int first, int last, double step);  // impulses, slacks and multipliers
-  // Of these rows, the largest of min(d s, z) and of what is left of the equation in w, m/s; row_error (m): scratch.
+  // Of these rows, the largest of min(d s, z) and of what is left of the equation in w, m/s; row_error (m):
+  // scratch.
   double error(const SolveState& state, int first, int last, std::span<double> row_error) const;
 
   // A row is at a bound where the multiplier outweighs the slack, else free.

@@ -41,10 +41,7 @@ class Newton : public Strategy {
     for (int k = 0; k < state.options.max_iterations; ++k) {
       ++state.summary->iterations;
       read_impulses(state);
-      kept_velocity_ = state.velocity;
       if (finish(state)) return true;
-      state.velocity = kept_velocity_;
-      read_impulses(state);
       if (!direction(state)) return false;
       const double step = line_search(state);
       state.tasks.run_over(state.step->body_chunks(), [&](const Chunk& chunk) {
@@ -68,16 +65,25 @@ class Newton : public Strategy {
     state.states_from_impulses();
   }
 
-  // An exact solve on the present states ends the search when it violates nothing.
+  // States that stay are tried; where they are not those of the answer, the search goes on from where it was.
   bool finish(SolveState& state) {
-    const double tolerance = state.violation_tolerance();
-    if (state.row_state == last_state_) {
-      if (!state.factor_free()) return false;
-      state.refine_free(0.1 * tolerance, kMostRefinements, SolveState::Refining::answer);
-      if (state.find_violations(tolerance) == 0) return state.residual() <= state.step->exact_limit_m_per_s();
+    if (state.row_state != last_state_) {
+      last_state_ = state.row_state;
+      return false;
     }
-    last_state_ = state.row_state;
+    kept_velocity_ = state.velocity;
+    if (solve_on_states(state)) return true;
+    state.velocity = kept_velocity_;
+    read_impulses(state);
     return false;
+  }
+
+  // Whether an exact solve on the present states violates nothing.
+  static bool solve_on_states(SolveState& state) {
+    const double tolerance = state.violation_tolerance();
+    if (!state.factor_free()) return false;
+    state.refine_free(0.1 * tolerance, kMostRefinements, SolveState::Refining::answer);
+    return state.find_violations(tolerance) == 0 && state.residual() <= state.step->exact_limit_m_per_s();
   }
 
   // Newton direction dv from the gradient at v.
@@ -111,8 +117,9 @@ class Newton : public Strategy {
     }
   }
 
-  // The step at which the slope of the energy along dv is zero: slope(t) = slope + t rate, where every row enters with its
-  // present piece and changes the rate at its breakpoints. Most of these lie beyond the zero, and are never put in order.
+  // The step at which the slope of the energy along dv is zero: slope(t) = slope + t rate, where every row
+  // enters with its present piece and changes the rate at its breakpoints. Most of these lie beyond the zero,
+  // and are never put in order.
   double line_search(SolveState& state) {
     state.step->jacobian_times(state.dv, row_step_);
     breakpoints_of_chunk_.resize(state.chunk_count());

@@ -18,16 +18,17 @@ namespace cleave {
 namespace {
 
 constexpr int kRestartSweeps = 30;
-// Enough sweeps to start from, options.predictor_sweeps at most, where five of them (SlabSweeps::kSweepsOfALook) move no more than
-// this share of the rows to or from a bound. Five cost about a tenth of a factorisation with what goes with it. Twelve recorded
-// steps of a pile of 200 boxes (cfm 1e-5) take 84 factorisations from a cold start after 10 sweeps each, 41 after 40, 33 after 60
-// and after 80.
+// Enough sweeps to start from, options.predictor_sweeps at most, where five of them
+// (SlabSweeps::kSweepsOfALook) move no more than this share of the rows to or from a bound. Five cost about a
+// tenth of a factorisation with what goes with it. Twelve recorded steps of a pile of 200 boxes (cfm 1e-5)
+// take 84 factorisations from a cold start after 10 sweeps each, 41 after 40, 33 after 60 and after 80.
 constexpr double kSettledShare = 0.003;
 // An iteration makes progress when it leaves less than this share of the least number of violations so far.
 constexpr double kProgress = 0.75;
-// Without progress, before giving up: restarts from sweeps, then single flips where a handful of violations are left. On a tower
-// that slides apart (500 steps, cfm 1e-5) 21 steps were given up after two restarts of 15 sweeps and one flip, 5 after these, which
-// save a tenth of the time of all steps. Where rows are stiffer many violations are left, and more attempts bring nothing.
+// Without progress, before giving up: restarts from sweeps, then single flips where a handful of violations
+// are left. On a tower that slides apart (500 steps, cfm 1e-5) 21 steps were given up after two restarts of
+// 15 sweeps and one flip, 5 after these, which save a tenth of the time of all steps. Where rows are stiffer
+// many violations are left, and more attempts bring nothing.
 constexpr int kRestarts = 2, kRestartsOfFew = 3, kSingleFlips = 6;
 constexpr int kFewViolations = 12;
 
@@ -43,7 +44,7 @@ class Pivot : public Strategy {
  public:
   bool run(SolveState& state) override {
     is_bound_ = false;
-    clamp(state);
+    take_states(state);
     warm_state_ = state.row_state;
     const double tolerance = state.violation_tolerance();
     if (!starts_settled(state, tolerance)) sweep(state, state.options.predictor_sweeps);
@@ -73,6 +74,12 @@ class Pivot : public Strategy {
   }
 
  private:
+  // Of impulses within their bounds, as they begin.
+  static void take_states(SolveState& state) {
+    StageTimer timer(state.tasks.clock(), Stage::predict);
+    state.states_from_impulses();
+  }
+
   // Impulses within their bounds, which then tell the states.
   static void clamp(SolveState& state) {
     StageTimer timer(state.tasks.clock(), Stage::predict);

@@ -8,8 +8,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Of the distance at ds = 0. On piles of 200 rocks a tenth of the accuracy took a third more back-substitutions and saved no
-// factorisation, and ten times as much cost four factorisations in ten.
+// Of the distance at ds = 0. On piles of 200 rocks a tenth of the accuracy took a third more
+// back-substitutions and saved no factorisation, and ten times as much cost four factorisations in ten.
 constexpr double kAccuracy = 1e-2;
 
 }  // namespace

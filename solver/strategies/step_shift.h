@@ -4,9 +4,10 @@
 //
 //     ds = mu u . dw_t,   u = w_t / |w_t|,
 //
-// with the dw_t of the same step, which is what makes the derivative unsymmetric. For a given ds the step is that of a cone, one
-// back-substitution with the factor at hand, and dw_t is affine in ds. So one unknown a contact remains, ds = r + A ds with A
-// known by back-substitutions alone; coulomb_shift.h's acceleration is GMRES there.
+// with the dw_t of the same step, which is what makes the derivative unsymmetric. For a given ds the step is
+// that of a cone, one back-substitution with the factor at hand, and dw_t is affine in ds. So one unknown a
+// contact remains, ds = r + A ds with A known by back-substitutions alone; coulomb_shift.h's acceleration is
+// GMRES there.
 #pragma once
 
 #include <span>
@@ -19,19 +20,20 @@ namespace cleave {
 
 class StepShift {
  public:
-  // Of the step from slacks slack_before (m, m/s), with state.slack where the factored step begins; the change is zero.
+  // Of the step from slacks slack_before (m, m/s), with state.slack where the factored step begins; the
+  // change is zero.
   void begin(SolveState& state, std::span<const double> slack_before);
 
   // Of the next back-substitution: state.f_r <- f_r - ds on the normals.
   void add_to_right_hand_side(SolveState& state) const;
 
-  // After the back-substitution: whether the change that it leads to is near enough to the one that it was for. Makes the next
-  // change.
+  // After the back-substitution: whether the change that it leads to is near enough to the one that it was
+  // for. Makes the next change.
   bool is_matched(SolveState& state);
 
  private:
-  // mu u . dw_t of a contact as change + row . (dv of its two bodies) + compliance . dlambda_t; zero where the law is not Coulomb's
-  // or no tangent moves, as the contact sticks.
+  // mu u . dw_t of a contact as change + row . (dv of its two bodies) + compliance . dlambda_t; zero where
+  // the law is not Coulomb's or no tangent moves, as the contact sticks.
   struct Contact {
     double row[12] = {};
     double change = 0;

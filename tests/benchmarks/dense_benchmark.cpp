@@ -29,9 +29,10 @@
 #include "harness/files/problem_file.h"
 #include "partition/registry.h"
 #include "solver/kernels/kernel.h"
-#include "solver/stage_clock.h"
 #include "solver/linear/dense_cholesky.h"
 #include "solver/linear/dense_panel.h"
+#include "solver/stage_clock.h"
+#include "tests/benchmarks/build_context.h"
 #include "tests/benchmarks/multiply_add_peak.h"
 
 extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
@@ -189,6 +190,7 @@ void register_rows() {
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
+  cleave::say_build();
   try {
     cleave::register_rows();
     std::vector<std::unique_ptr<cleave::FreeSystem>> systems;

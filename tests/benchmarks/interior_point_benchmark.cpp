@@ -35,8 +35,8 @@ struct Request {
 
 // Every solve starts from the recorded impulses, as a step of a run does.
 void solve_all(const Request& request, const InteriorConstants& constants, const std::string& label) {
-  const auto solver =
-      make_direct_solver("interior-point", "monolithic", SolveOptions{}, Settings(), make_interior_point(constants));
+  const auto solver = make_direct_solver("interior-point", "monolithic", SolveOptions{}, Settings(),
+                                         make_interior_point(constants));
   for (const auto& [name, problem] : request.problems) {
     Solution solution;
     solution.impulse = problem.warm_impulse;

@@ -2,11 +2,12 @@
 //
 //   partition_benchmark [--problem FILE]... [Google Benchmark options]
 //
-// Graphs are synthetic piles and those of the problem files. What draws at random runs with seeds 1 to 10 in turn: the time
-// is the mean over them. Counted once a row, apart from the times, over all ten:
+// Graphs are synthetic piles and those of the problem files. What draws at random runs with seeds 1 to 10 in
+// turn: the time is the mean over them. Counted once a row, apart from the times, over all ten:
 //
 //   above_bound      seeds whose result has a part of more than 30 bodies, (1 + max-growth) max-bodies
-//   interface_rows   the least over the other seeds, of which parts and cut_pairs are; absent where there is none
+//   interface_rows   the least over the other seeds, of which parts and cut_pairs are; absent where there is
+//                    none
 //   median_rows      the median over the same
 #include <benchmark/benchmark.h>
 
@@ -23,6 +24,7 @@
 #include "harness/experiment/problem_graph.h"
 #include "harness/files/problem_file.h"
 #include "partition/registry.h"
+#include "tests/benchmarks/build_context.h"
 #include "tests/benchmarks/synthetic_pile.h"
 
 namespace cleave {
@@ -72,7 +74,8 @@ std::vector<std::string> variants_of(const std::string& partitioner) {
   return {""};
 }
 
-// Every refiner after the partitioners of the paper, none after the others; crumbs folded in before fm and fm-hill.
+// Every refiner after the partitioners of the paper, none after the others; crumbs folded in before fm and
+// fm-hill.
 std::vector<Pair> all_pairs() {
   std::vector<Pair> pairs;
   for (const PartitionerEntry& entry : partitioners()) {
@@ -167,6 +170,7 @@ int run(int argc, char** argv) {
   }
   int other_count = static_cast<int>(others.size());
   benchmark::Initialize(&other_count, others.data());
+  say_build();
   if (benchmark::ReportUnrecognizedArguments(other_count, others.data())) return 1;
   const std::vector<Pair> pairs = all_pairs();
   register_benchmarks(graphs, pairs);

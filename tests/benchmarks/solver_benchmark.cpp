@@ -28,6 +28,7 @@
 #include "solver/registry.h"
 #include "solver/residual.h"
 #include "solver/stage_clock.h"
+#include "tests/benchmarks/build_context.h"
 #include "tests/benchmarks/cholmod_reference.h"
 
 namespace cleave {
@@ -156,6 +157,7 @@ void register_solvers(const NamedProblem& named) {
 
 int run(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
+  say_build();
   if (argc < 2) throw std::invalid_argument("solver_benchmark: name at least one problem file");
   std::vector<std::unique_ptr<NamedProblem>> problems;
   for (int k = 1; k < argc; ++k) {

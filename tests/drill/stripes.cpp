@@ -1,5 +1,5 @@
-// stripes: bodies in the order of their indices, `stripe-bodies` to a part, whatever the graph. A control: what a
-// partition costs that looks at nothing.
+// stripes: bodies in the order of their indices, `stripe-bodies` to a part, whatever the graph. A control:
+// what a partition costs that looks at nothing.
 #include <memory>
 
 #include "harness/base/parameter.h"

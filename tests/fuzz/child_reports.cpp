@@ -47,9 +47,10 @@ std::string take_child_report() {
   return report;
 }
 
-// A stack is lines "    #0 0x0123 (module+0x4567)", with names and places behind where they are known. The first one is
-// where it happened, others tell whose memory it was. The innermost frames may be the sanitiser's own, which is linked
-// into this program: up to two where the memory was misused, one where it was allocated.
+// A stack is lines "    #0 0x0123 (module+0x4567)", with names and places behind where they are known. The
+// first one is where it happened, others tell whose memory it was. The innermost frames may be the
+// sanitiser's own, which is linked into this program: up to two where the memory was misused, one where it
+// was allocated.
 bool is_own_fault(const std::string& report) {
   constexpr int kInnermost = 3, kAllocating = 2;
   std::istringstream lines(report);

@@ -1,4 +1,5 @@
-// What fuzzers found, and what takes them to every place they know, through the same functions: no fuzzer is needed.
+// What fuzzers found, and what takes them to every place they know, through the same functions: no fuzzer is
+// needed.
 #include <gtest/gtest.h>
 
 #include <charconv>

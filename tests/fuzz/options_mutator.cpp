@@ -1,4 +1,5 @@
-// Changes a command line as its writer would: by options and values that there are, and some that there nearly are.
+// Changes a command line as its writer would: by options and values that there are, and some that there
+// nearly are.
 #include <map>
 #include <set>
 #include <sstream>

@@ -1,7 +1,7 @@
 // Options as they are typed, beside those of a manifest, up to what a run is made from.
 //
-// The first line of the bytes is a command (run, record, replay), each other line one argument; lines that begin with
-// "= " are options that a manifest holds, "= name=value".
+// The first line of the bytes is a command (run, record, replay), each other line one argument; lines that
+// begin with "= " are options that a manifest holds, "= name=value".
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>

@@ -36,8 +36,8 @@ ProblemFile file_with_sets() {
   return file;
 }
 
-// As cleave writes them, and as others do, which vouch for nothing; then both with contacts that have no box. A recipe
-// names an image by its place here, so that new ones come at the end.
+// As cleave writes them, and as others do, which vouch for nothing; then both with contacts that have no box.
+// A recipe names an image by its place here, so that new ones come at the end.
 const std::array<std::string, 4>& sound_images() {
   static const std::array<std::string, 4> images = {
       image_written_by([](const fs::path& path) { write_problem_file(path, sample_file(kBodies)); }),

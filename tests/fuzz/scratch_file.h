@@ -1,5 +1,5 @@
-// Bytes under a file name, for readers that take a path; scripts/fuzz puts it into memory. An unnamed file that
-// /proc/self/fd names would not do: the HDF5 library asks where that link leads, and opens nothing.
+// Bytes under a file name, for readers that take a path; scripts/fuzz puts it into memory. An unnamed file
+// that /proc/self/fd names would not do: the HDF5 library asks where that link leads, and opens nothing.
 #pragma once
 
 #include <fstream>

@@ -10,8 +10,8 @@
 
 namespace cleave::fuzz {
 
-// A property that does not hold. Whatever leaves a target is a finding: this, an exception that its reader does not
-// promise, or the end of the process.
+// A property that does not hold. Whatever leaves a target is a finding: this, an exception that its reader
+// does not promise, or the end of the process.
 struct Finding : std::logic_error {
   using std::logic_error::logic_error;
 };

@@ -118,7 +118,8 @@ TEST_F(ChosenKernel, PartsForNoKernelAreRefusedByName) {
   }
 }
 
-// By which a solve of one kernel costs 1 us and of the others 2; and, where flops are to cost something, factoring its parts.
+// By which a solve of one kernel costs 1 us and of the others 2; and, where flops are to cost something,
+// factoring its parts.
 std::string calibration_of_cheapest(CostKernel cheapest, const fs::path& path, double ns_per_flop = 0) {
   std::vector<KernelCost> costs;
   for (std::size_t k = 0; k < cost_kernel_names().size(); ++k) {

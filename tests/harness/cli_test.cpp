@@ -61,6 +61,8 @@ const std::vector<BadInput> kBadInputs = {
     {{"--steps", "40", "--measure-every", "50"}, {"--measure-every: 50", "--steps 40", "1 to 40"}},
     {{"--repeats", "0"}, {"--repeats", "0", "[1, inf)"}},
     {{"--skip", "-1"}, {"--skip", "-1", "[0, inf)"}},
+    {{"--steps", "40", "--skip", "40"}, {"--skip: 40", "--steps 40"}},
+    {{"--out", "caf\xe9"}, {"'caf\\xe9' is not UTF-8"}},
     {{"--sweeps", "-1"}, {"--sweeps", "-1", "[0, inf)"}},
     {{"--seed", "-1"}, {"--seed", "'-1'", "[0, 2^64)"}},
     {{"--bodies", "0"}, {"--bodies", "0", "[1, "}},
@@ -349,8 +351,8 @@ TEST(Options, ALookOutThatIsNoNumberIsRefused) {
 TEST(Options, EveryOptionThatCanChangeACellHasAColumn) {
   const std::map<std::string, std::string> renamed = {
       {"dt", "dt_s"}, {"gravity", "gravity_m_per_s2"}, {"repeats", "repeat_count"}};
-  // Which rows there are, where they go, what --stiffness and --damping make of cfm and erp, --objective of refiners, and
-  // what rows that it refuses name in their reason.
+  // Which rows there are, where they go, what --stiffness and --damping make of cfm and erp, --objective of
+  // refiners, and what rows that it refuses name in their reason.
   const std::set<std::string> not_in_a_cell = {"measure-every", "skip",         "out",     "force",
                                                "record-motion", "stiffness",    "damping", "memory-limit",
                                                "objective",     "explain-model"};

@@ -92,7 +92,8 @@ TEST_F(Campaigns, CollectedAreVerifiedUnderAnyName) {
   EXPECT_EQ(count_lines(run_cleave({"verify", directory_ / "table"}).out), 4);
 }
 
-// verify knows the tables by their checksums: a byte of any of the four files, a file that is gone, one that is none of them.
+// verify knows the tables by their checksums: a byte of any of the four files, a file that is gone, one that
+// is none of them.
 TEST_F(Campaigns, CollectedAreVerified) {
   const fs::path out = directory_ / "all.csv";
   ASSERT_EQ(run_cleave({"collect", directory_ / "a", "--out", out}).exit_code, 0);

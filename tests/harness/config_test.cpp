@@ -2,7 +2,9 @@
 // the machine's columns. record and replay likewise.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
 
 #include "tests/harness/machine_columns.h"
 #include "tests/harness/run_program.h"
@@ -201,6 +203,13 @@ TEST_F(Config, ASessionBesideItTakesNoRepeatsFromIt) {
   make_base();
   replace_in_base("\"repeats\": 1", "\"repeats\": 3");
   EXPECT_EQ(key(Words{"--config", manifest("base"), "--session"}), key(kShort + Words{"--session"}));
+}
+
+TEST_F(Config, PartitionersBesideItAreThoseNamed) {
+  make_base({"--objective", "cost"});
+  Words named = kShort;
+  *std::next(std::ranges::find(named, "--partitioner")) = "multilevel";
+  EXPECT_EQ(key({"--config", manifest("base"), "--partitioner", "multilevel"}), key(named));
 }
 
 TEST_F(Config, ABodyOrderInAFileIsGivenBesideIt) {

@@ -1,5 +1,5 @@
-// Fits of the cost model: the least-squares method against every set of active bounds, coefficients that are found again,
-// and counted work against what the kernels count themselves.
+// Fits of the cost model: the least-squares method against every set of active bounds, coefficients that are
+// found again, and counted work against what the kernels count themselves.
 #include "harness/experiment/cost_fit.h"
 
 #include <gtest/gtest.h>
@@ -154,7 +154,8 @@ TEST(CostFit, HalfOfTheSolvesTakeMoreThanModelled) {
   EXPECT_LT(median_error(samples, found, Knowledge::of_sample), 1e-3);
 }
 
-// Two solves of a cell of which one takes a fifth less than modelled and one a fifth more, and a cell of its own.
+// Two solves of a cell of which one takes a fifth less than modelled and one a fifth more, and a cell of its
+// own.
 TEST(CostFit, StepsOfACellMakeUpForEachOther) {
   const KernelCost truth{CostKernel::schur_rows,
                          1,

@@ -109,6 +109,9 @@ TEST(CostOptions, CalibrateWritesWhatRunsRead) {
   EXPECT_EQ(rowless.exit_code, 1);
   EXPECT_NE(rowless.err.find(free + ": has no constraint row"), std::string::npos) << rowless.err;
   // Before anything is timed.
+  const ProgramResult idle = run_cleave({"calibrate", one, two, "--out", out, "--seed", "1"});
+  EXPECT_EQ(idle.exit_code, 1);
+  EXPECT_NE(idle.err.find("--seed: is of simulated scenes"), std::string::npos) << idle.err;
   const ProgramResult nowhere = run_cleave({"calibrate", one, two, "--out", directory / "none/own.toml"});
   EXPECT_EQ(nowhere.exit_code, 1);
   EXPECT_NE(nowhere.err.find("none/own.toml cannot be written: there is no directory"), std::string::npos)
@@ -195,7 +198,8 @@ TEST(CostOptions, AllLeavesOutWhatHasATwin) {
     EXPECT_NE((result.out + result.err).find(line), std::string::npos) << line << "\n" << result.err;
 }
 
-// What was chosen is stored with the parts, so that each file is verified alone; parts that are taken over keep it.
+// What was chosen is stored with the parts, so that each file is verified alone; parts that are taken over
+// keep it.
 TEST(CostOptions, StoredPartsOfAutoAreMadeAgain) {
   const TemporaryDirectory directory;
   const Arguments record = {"record", "--scene", "rock_pile",  "--bodies",

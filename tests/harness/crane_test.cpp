@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kGravity_m_per_s2 = 9.81;
 
-WorldStepper make_stepper(const char* scene_name, const std::map<std::string, std::string>& given,
-                          double h_s, double cfm) {
+WorldStepper make_stepper(const char* scene_name, const std::map<std::string, std::string>& given, double h_s,
+                          double cfm) {
   for (const SceneEntry& scene : scenes()) {
     if (std::string(scene.name) != scene_name) continue;
     ExtractOptions options;
@@ -46,7 +46,8 @@ Weight weigh(const StepProblem& problem, const WorldStepper& stepper, int first_
 class CraneAtRest : public testing::Test {
  protected:
   static constexpr int kLinks = 100;
-  // What the joints give when the weight comes on them lets the boom and the load swing, without end and in proportion.
+  // What the joints give when the weight comes on them lets the boom and the load swing, without end and in
+  // proportion.
   static constexpr double kCfm = 1e-12;
   static void SetUpTestSuite() {
     crane_ = new WorldStepper(make_stepper("crane", {{"slew", "0"}}, 0.001, kCfm));
@@ -73,8 +74,8 @@ TEST_F(CraneAtRest, TheCableCarriesWhatHangsBelow) {
   std::printf("cable tension: relative error at most %.1e\n", worst);
 }
 
-// Four equal springs in the corners of a rectangle: with weight W at (x, y) off its middle the foot at (+-a, +-b) carries
-// W (1 +- x / a +- y / b) / 4.
+// Four equal springs in the corners of a rectangle: with weight W at (x, y) off its middle the foot at (+-a,
+// +-b) carries W (1 +- x / a +- y / b) / 4.
 TEST_F(CraneAtRest, TheOutriggersCarryTheCrane) {
   const Weight all = weigh(crane_->problem(), *crane_, 0);
   double worst = 0, sum_n = 0;
@@ -111,8 +112,8 @@ TEST(CraneMotion, Slews) {
   EXPECT_LT(turned_rad, 0.3);
 }
 
-// The rock in the middle of the lowest layer, on the hook, is drawn out from under those that lie on it; then the crane
-// slews with it.
+// The rock in the middle of the lowest layer, on the hook, is drawn out from under those that lie on it; then
+// the crane slews with it.
 TEST(CraneMotion, LiftsARockOutOfThePile) {
   WorldStepper site = make_stepper("mixed_site", {{"rings", "1"}, {"links", "50"}}, 0.001, 1e-10);
   site.step();

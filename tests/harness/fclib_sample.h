@@ -17,8 +17,9 @@ extern "C" {
 
 namespace cleave {
 
-// Joints between neighbours, contacts with static geometry and of every other body, in turn: with Coulomb friction, without
-// friction, and with tangents that carry nothing. Some rows have no compliance; mass blocks are full.
+// Joints between neighbours, contacts with static geometry and of every other body, in turn: with Coulomb
+// friction, without friction, and with tangents that carry nothing. Some rows have no compliance; mass blocks
+// are full.
 inline StepProblem fclib_sample(int bodies, int tangents, std::uint64_t seed) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   SampleRandom random(seed);

@@ -1,5 +1,5 @@
-// cleave export and import --format fclib. What is exported is read by the library of FCLIB's own and held against the
-// problem in dense arrays; what that library writes is imported.
+// cleave export and import --format fclib. What is exported is read by the library of FCLIB's own and held
+// against the problem in dense arrays; what that library writes is imported.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -125,8 +125,8 @@ TEST_F(Fclib, ComesBackAsTheSameProblem) {
   }
 }
 
-// A pile that cleave recorded and solved: its impulses and velocities satisfy FCLIB's own equations, and the file that comes back has
-// the same solution.
+// A pile that cleave recorded and solved: its impulses and velocities satisfy FCLIB's own equations, and the
+// file that comes back has the same solution.
 TEST_F(Fclib, SolutionsAreSolutionsOnBothSides) {
   const std::string recorded = directory_ / "recorded", problem = recorded + "/log_tower_step000004.h5";
   ASSERT_EQ(run_cleave({"record", "--scene", "log_tower", "--layers", "3", "--at", "4", "--out", recorded})

@@ -1,5 +1,6 @@
-// Closed forms of friction through the program: when a block on a slope begins to slide, whatever the direction of the slope against the
-// axes of the friction rows, and how a block that slides lifts off under the convex cone.
+// Closed forms of friction through the program: when a block on a slope begins to slide, whatever the
+// direction of the slope against the axes of the friction rows, and how a block that slides lifts off under
+// the convex cone.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -30,7 +31,8 @@ struct Slope {
       : normal{std::sin(incline) * std::cos(heading), std::sin(incline) * std::sin(heading),
                std::cos(incline)} {}
 
-  // Of the downhill direction against the tangents of a contact, which ODE takes by its dPlaneSpace: the first lies in the plane x = 0.
+  // Of the downhill direction against the tangents of a contact, which ODE takes by its dPlaneSpace: the
+  // first lies in the plane x = 0.
   double angle() const {
     const double a = std::hypot(normal[1], normal[2]);
     const Vector p = {0, -normal[2] / a, normal[1] / a};
@@ -74,7 +76,8 @@ class FrictionForms : public ::testing::Test {
   TemporaryDirectory scratch_;
 };
 
-// tan of the incline against mu for cone and Coulomb's law; against mu over the greater of |cos|, |sin| of the angle for the box.
+// tan of the incline against mu for cone and Coulomb's law; against mu over the greater of |cos|, |sin| of
+// the angle for the box.
 TEST_F(FrictionForms, ABlockSlidesFromTheInclineOfItsModelOn) {
   constexpr double kIncline = 20;
   for (const double heading : {90.0, 75.0, 60.0, 45.0}) {
@@ -90,9 +93,9 @@ TEST_F(FrictionForms, ABlockSlidesFromTheInclineOfItsModelOn) {
   }
 }
 
-// The convex cone parts what slides at mu times its speed: h mu v higher after every step, where v is the speed after it; the normal
-// impulse is that of gravity and of the lift, and friction mu times it, so that v = (v0 - mu g h) / (1 + mu^2). Neither the box nor
-// Coulomb's law lifts anything.
+// The convex cone parts what slides at mu times its speed: h mu v higher after every step, where v is the
+// speed after it; the normal impulse is that of gravity and of the lift, and friction mu times it, so that v
+// = (v0 - mu g h) / (1 + mu^2). Neither the box nor Coulomb's law lifts anything.
 TEST_F(FrictionForms, ASlidingBlockLiftsOffUnderTheConeAlone) {
   const Slope flat(0, 0);
   constexpr double kSpeed = 2, kMu = 0.2, kStep = 1.0 / 60;

@@ -185,8 +185,8 @@ TEST_F(FrictionReplay, RecordAndRunHaveTheModels) {
   }
 }
 
-// A chain that hits the ground, where de Saxce's shift leads nowhere on many a step: 9 of these 30 are not solved without the
-// method that comes last.
+// A chain that hits the ground, where de Saxce's shift leads nowhere on many a step: 9 of these 30 are not
+// solved without the method that comes last.
 TEST_F(FrictionReplay, ExactSolvesAChainUnderCoulombsLaw) {
   const fs::path out = *directory_ / "chain";
   run_cleave({"run",   "--scene",         "chain_drop", "--links",   "20",  "--steps",

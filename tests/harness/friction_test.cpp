@@ -66,7 +66,7 @@ class OracleSolver : public StepSolver {
 // --- prediction -----------------------------------------------------------------------------------------
 
 // The same sweeps on the dense matrix J M^-1 J^T + C, recomputing every row's slack from scratch.
-std::vector<double> slow_prediction(const StepProblem& problem) {
+std::vector<double> slow_prediction(const StepProblem& problem, int sweeps) {
   const int m = problem.row_count(), size = 6 * problem.body_count();
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(m, size), mass = Eigen::MatrixXd::Zero(size, size);
   for (int i = 0; i < problem.body_count(); ++i)
@@ -87,7 +87,7 @@ std::vector<double> slow_prediction(const StepProblem& problem) {
     return std::clamp(value, -bound, bound);
   };
   for (int r = 0; r < m; ++r) impulse[r] = project(r, problem.warm_impulse[r]);
-  for (int sweep = 0; sweep < 5; ++sweep)
+  for (int sweep = 0; sweep < sweeps; ++sweep)
     for (int r = 0; r < m; ++r)
       impulse[r] = project(r, impulse[r] - (a.row(r).dot(impulse) + q[r]) / a(r, r));
   return {impulse.begin(), impulse.end()};
@@ -96,9 +96,12 @@ std::vector<double> slow_prediction(const StepProblem& problem) {
 TEST(FrictionPrediction, BoundsAgreeWithDenseSweeps) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     StepProblem problem = make_column_problem(seed);
-    const std::vector<double> expected = slow_prediction(problem);
+    ExtractOptions options;  // 5 sweeps
+    if (seed % 3 == 1) options.bound_sweeps = 0;
+    if (seed % 3 == 2) options.bound_sweeps = static_cast<int>(seed);
+    const std::vector<double> expected = slow_prediction(problem, options.bound_sweeps);
     const StepProblem before = problem;
-    predict_friction_bounds(problem);
+    friction_model(FrictionModel::box).set(options, problem);
     for (int r = 0; r < problem.row_count(); ++r) {
       if (problem.row_kind[r] == RowKind::friction) {
         EXPECT_NEAR(problem.upper[r], 0.5 * expected[problem.friction_row[r]], 1e-10) << "seed " << seed;

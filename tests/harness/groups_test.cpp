@@ -38,8 +38,8 @@ class Groups : public testing::Test {
   TemporaryDirectory directory_;
 };
 
-// Of the crane with 20 links: chassis and four outriggers; turntable, counterweight, six sections, eight links of the
-// pendant, mast, hoist; links and load.
+// Of the crane with 20 links: chassis and four outriggers; turntable, counterweight, six sections, eight
+// links of the pendant, mast, hoist; links and load.
 TEST_F(Groups, AWorldAndItsProblemFileSplitAlike) {
   const ProgramResult live_run = run(kCrane, "run", kSplit);
   ASSERT_EQ(live_run.exit_code, 0) << live_run.err;

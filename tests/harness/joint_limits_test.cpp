@@ -29,8 +29,8 @@ const AxisKind kAxisKinds[] = {{&kJointCases[1], dJointGetHingeAngle, dJointSetH
 enum class Stop { none, far, low, high, both_in_one };
 constexpr Stop kStops[] = {Stop::none, Stop::far, Stop::low, Stop::high, Stop::both_in_one};
 
-// Of a hinge whose first body is the static environment ODE tells the angle with one sign and stops it with the
-// other (0.16.2).
+// Of a hinge whose first body is the static environment ODE tells the angle with one sign and stops it with
+// the other (0.16.2).
 double position_as_stopped(const AxisKind& kind, dJointID joint, Attachment attachment) {
   const bool is_reversed = attachment == Attachment::static_then_body && kind.position == dJointGetHingeAngle;
   return is_reversed ? -kind.position(joint) : kind.position(joint);
@@ -166,8 +166,8 @@ TEST(JointLimits, WarmImpulsesStayWithinTheBoundsOfTheStep) {
   EXPECT_EQ(extract(*world, {}, {}, memory).warm_impulse, (std::vector<double>{1, 2, 3, 4, 5, 0}));
 }
 
-// An arm on a hinge and a load on a slider of it, driven to and fro between stops, too weakly at times: in every
-// step ODE has the velocities of the exact solution.
+// An arm on a hinge and a load on a slider of it, driven to and fro between stops, too weakly at times: in
+// every step ODE has the velocities of the exact solution.
 TEST(JointLimits, AMotionThroughStopsAgreesInEveryStep) {
   const auto world = make_test_world(
       [](dWorldID w, dSpaceID, SceneContent& content) {

@@ -149,8 +149,8 @@ TEST(Layering, FilesPartitionersAndSolversCompileWithoutOde) {
   int sources = 0;
   for (std::string line; std::getline(file, line);) {
     if (!line.starts_with(" ")) {
-      // "CMakeFiles/cleave_files.dir/harness/files/manifest.cpp.o: #deps 300, ...", then what it reads, a line each:
-      // the source, or the sources of a unit, and headers after the first that includes them
+      // "CMakeFiles/cleave_files.dir/harness/files/manifest.cpp.o: #deps 300, ...", then what it reads, a
+      // line each: the source, or the sources of a unit, and headers after the first that includes them
       of_library = line.starts_with("CMakeFiles/cleave");
       source.clear();
     } else if (of_library && line.starts_with(root) && line.ends_with(".cpp")) {

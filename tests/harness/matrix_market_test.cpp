@@ -14,7 +14,8 @@ namespace {
 
 using Dense = std::vector<std::vector<double>>;
 
-// As the format is defined: symmetric files hold the lower triangle. Repeated places and the upper triangle fail the test.
+// As the format is defined: symmetric files hold the lower triangle. Repeated places and the upper triangle
+// fail the test.
 Dense read_matrix_market(const std::string& text) {
   std::istringstream lines(text);
   std::string line, symmetry;
@@ -77,7 +78,8 @@ StepProblem full_problem(int bodies, std::uint64_t seed) {
   return problem;
 }
 
-// By its definition in dense arrays: interior rows into H, whose inverse Gauss and Jordan find, interface rows around it.
+// By its definition in dense arrays: interior rows into H, whose inverse Gauss and Jordan find, interface
+// rows around it.
 Dense schur_complement(const StepProblem& p, const std::vector<int>& part) {
   const Dense j = jacobian(p);
   std::vector<int> across;
@@ -149,6 +151,15 @@ TEST(MatrixMarket, HoldsTheSchurComplementOfAPartition) {
   StoredPartition whole;
   whole.part_of_body.assign(9, 0);
   EXPECT_TRUE(read_matrix_market(text_of("S", problem, &whole)).empty());
+}
+
+// 1e30 drowns the masses, so that the factor of the rows within parts meets a pivot that is none.
+TEST(MatrixMarket, HasNoSWhereItsFactorIsNone) {
+  StepProblem problem = full_problem(9, 7);
+  std::ranges::fill(problem.compliance, 1e-30);
+  StoredPartition partition;
+  partition.part_of_body = {0, 0, 0, 0, 0, 0, 0, 0, 1};
+  EXPECT_THROW(text_of("S", problem, &partition), std::invalid_argument);
 }
 
 TEST(MatrixMarket, HasNoHWithoutCompliance) {

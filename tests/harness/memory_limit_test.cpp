@@ -1,4 +1,5 @@
-// --memory-limit: a factorisation that will not fit is a row that says so, and the limit that held is written down.
+// --memory-limit: a factorisation that will not fit is a row that says so, and the limit that held is written
+// down.
 #include "harness/experiment/memory_limit.h"
 
 #include <gtest/gtest.h>

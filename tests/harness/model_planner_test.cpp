@@ -1,4 +1,5 @@
-// Planned solves against solves of all rows: the same velocities on all scenes and on random worlds, whatever was left out.
+// Planned solves against solves of all rows: the same velocities on all scenes and on random worlds, whatever
+// was left out.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -236,8 +237,8 @@ TEST(ModelPlanner, WhatMovesIsTakenBackFromRest) {
   EXPECT_GT(solved.counts.rows_returned, 0);
 }
 
-// The answer of a step is its own rest: with its impulses as those of the step before all islands rest, and one body's push
-// wakes the bodies that rows join to it and no others.
+// The answer of a step is its own rest: with its impulses as those of the step before all islands rest, and
+// one body's push wakes the bodies that rows join to it and no others.
 TEST(ModelPlanner, IslandsRestAndWakeApart) {
   WorldStepper world = stepper_of({{{"scene", "rock_pile"}, {"bodies", "30"}}, 0});
   world.steps(90);
@@ -280,7 +281,8 @@ TEST(ModelPlanner, TurnedBoxesRest) {
   EXPECT_EQ(std::ranges::count(ModelPlanner().plan(problem), RowPlan::at_rest), problem.row_count());
 }
 
-// The answer of a pile at rest as impulses of the step before, with the sets that the friction model makes of its contacts.
+// The answer of a pile at rest as impulses of the step before, with the sets that the friction model makes of
+// its contacts.
 StepProblem resting_pile(ContactSet set) {
   WorldStepper world = stepper_of({{{"scene", "rock_pile"}, {"bodies", "30"}}, 0});
   world.steps(90);
@@ -330,8 +332,8 @@ TEST(ModelPlanner, EverySolverTakesAStepInWhichAllRests) {
   }
 }
 
-// One solver through steps in which first one island moves, then none, then all: what it carries from a step to the next fits
-// no bodies as well as all of them.
+// One solver through steps in which first one island moves, then none, then all: what it carries from a step
+// to the next fits no bodies as well as all of them.
 TEST(ModelPlanner, ASolverGoesFromRestToMotionAndBack) {
   const StepProblem resting = resting_pile(ContactSet::box);
   StepProblem pushed = resting, moving = resting;
@@ -350,7 +352,8 @@ TEST(ModelPlanner, ASolverGoesFromRestToMotionAndBack) {
   }
 }
 
-// A contact that parts faster than anything can push is left out; one that parts slowly beside a violated row stays.
+// A contact that parts faster than anything can push is left out; one that parts slowly beside a violated row
+// stays.
 TEST(ModelPlanner, MarginIsWhatOtherRowsAreViolatedBy) {
   StepProblem problem;
   problem.h_s = 0.01;

@@ -1,4 +1,5 @@
-// --model auto through the program: the same velocities, rows that count what was left out, and a directory that verifies.
+// --model auto through the program: the same velocities, rows that count what was left out, and a directory
+// that verifies.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,7 +69,8 @@ TEST(ModelRun, ReplayTakesItAndRecordsNothing) {
   EXPECT_EQ(run_cleave({"verify", scratch / "out"}).exit_code, 0);
 }
 
-// Of what was left out the file of the problem knows nothing: the interface is that of the rows that were solved.
+// Of what was left out the file of the problem knows nothing: the interface is that of the rows that were
+// solved.
 TEST(ModelRun, AReplayWithPartsAndSolutionsVerifies) {
   const TemporaryDirectory scratch;
   const Words options = {"--solver",         "schur,pivot:schur-bodies",

@@ -1,4 +1,5 @@
-// run --explain-model: worlds in which one thing is modelled for nothing, and is found; others in which it is not.
+// run --explain-model: worlds in which one thing is modelled for nothing, and is found; others in which it is
+// not.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -106,6 +107,11 @@ TEST_F(ExplainModel, FindsTheContactCap) {
   EXPECT_EQ(found(rests, {"--contact-cap", "4"}).at("contact_cap"), 1);
   EXPECT_NEAR(number("contact_cap", "rows_share"), 0.5, 1e-12);
   EXPECT_EQ(found(rests, {"--contact-cap", "8"}).at("contact_cap"), 0);
+  // The cap is one of pairs of geoms: four contacts with each of two grounds are no eight with one.
+  const std::string between = "[[plane]]\nnormal = [0, 0, 1]\noffset_m = 0\n" + rests;
+  EXPECT_EQ(found(between, {"--contact-cap", "8"}).at("contact_cap"), 0);
+  EXPECT_EQ(found(between, {"--contact-cap", "4"}).at("contact_cap"), 1);
+  EXPECT_NEAR(number("contact_cap", "rows_share"), 0.5, 1e-12);
 }
 
 // Along the diagonal of its box friction is sqrt 2 times what a cone allows.

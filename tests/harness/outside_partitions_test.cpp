@@ -307,5 +307,31 @@ TEST_F(OutsidePartitions, AllLeavesTheFileOutAndSaysSo) {
   EXPECT_GE(std::set<std::string>(names.begin(), names.end()).size(), 5u);
 }
 
+// What is named beside `all` is no part of it, also where a file gives it another name.
+TEST_F(OutsidePartitions, WhatIsNamedBesideAllIsNotLeftOut) {
+  const std::string parts = "file@path=" + write_parts("whole.part", 20, 3);
+  const ProgramResult result = run_cleave({"replay", problem(), "--partitioner", "all," + parts, "--refiner",
+                                           "none", "--skip-small-islands", "--out", *this / "out"});
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_EQ(result.err.find("all leaves out file@"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("has no max-bodies"), std::string::npos) << result.err;
+}
+
+// Unless a run is repeated, whose options were all stored.
+TEST_F(OutsidePartitions, PartsThatNobodyReadsAreTold) {
+  const std::string told = "change nothing: no solver of this run splits bodies\n";
+  const Arguments parts = {"--partitioner", "mindp", "--refiner", "none"};
+  const Arguments run = {"run", "--scene", "rock_pile", "--bodies", "5", "--steps", "1"};
+  const ProgramResult exact =
+      run_cleave(run + parts + Arguments{"--solver", "exact", "--out", *this / "exact"});
+  EXPECT_NE(exact.err.find("--partitioner, --refiner " + told), std::string::npos) << exact.err;
+  const ProgramResult again = run_cleave({"rerun", *this / "exact", "--out", *this / "again"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(again.err.find(told), std::string::npos) << again.err;
+  const ProgramResult both =
+      run_cleave(run + parts + Arguments{"--solver", "exact,schur", "--out", *this / "both"});
+  EXPECT_EQ(both.err.find(told), std::string::npos) << both.err;
+}
+
 }  // namespace
 }  // namespace cleave

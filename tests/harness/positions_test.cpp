@@ -1,5 +1,5 @@
-// Partitioners that go by the positions of bodies: from a world, from its problem files, and from files that tell
-// none.
+// Partitioners that go by the positions of bodies: from a world, from its problem files, and from files that
+// tell none.
 #include <gtest/gtest.h>
 
 #include <algorithm>

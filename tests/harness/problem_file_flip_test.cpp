@@ -1,4 +1,5 @@
-// A changed byte of a problem file never crashes, never hangs, and never gives another problem without a word.
+// A changed byte of a problem file never crashes, never hangs, and never gives another problem without a
+// word.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -167,8 +168,8 @@ TEST_F(FlippedProblemFile, TextsOfUnusualTypesAreRefused) {
   }
 }
 
-// An integer's type is its class, its sign, its size, and where its bits begin: a place beyond them is read as nobody knows
-// what.
+// An integer's type is its class, its sign, its size, and where its bits begin: a place beyond them is read
+// as nobody knows what.
 TEST_F(FlippedProblemFile, IntegersOfUnusualTypesAreRefused) {
   write_problem_file(path_, file_);
   const std::string bytes = read_text(path_);

@@ -1,4 +1,5 @@
-// Problem files that lead elsewhere, ask for more than they hold or bring texts that are none: refused by name.
+// Problem files that lead elsewhere, ask for more than they hold or bring texts that are none: refused by
+// name.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 

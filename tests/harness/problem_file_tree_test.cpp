@@ -1,4 +1,5 @@
-// Trees of parts in problem files: kept to the last node, refused where they are none, and made again by verify.
+// Trees of parts in problem files: kept to the last node, refused where they are none, and made again by
+// verify.
 #include <gtest/gtest.h>
 
 #include <algorithm>

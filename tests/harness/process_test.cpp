@@ -175,7 +175,8 @@ TEST(LittleMemory, IsARowOrALine) {
   EXPECT_GE(short_of_memory, 3);
 }
 
-// From where the loader just finds room for the libraries: memory ends before main, in destructors, for exceptions.
+// From where the loader just finds room for the libraries: memory ends before main, in destructors, for
+// exceptions.
 TEST(LittleMemory, IsALineWhereverItEnds) {
   int lines = 0;
   for (int kbytes = 28000; kbytes <= 36000; kbytes += 100) {
@@ -234,7 +235,8 @@ struct Running {
   pid_t process;
 };
 
-// So many repeats that no measured step comes to its end: whoever goes on with it after the signal never ends.
+// So many repeats that no measured step comes to its end: whoever goes on with it after the signal never
+// ends.
 const Arguments kEndlessStep = {
     "--repeats", "1000000", "--partitioner", "mindp,mix",
     "--refiner", "none,fm", "--solver",      "schur,exact,pgs,pivot:schur-bodies"};

@@ -1,11 +1,12 @@
 #include "harness/base/progress.h"
 
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <pty.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <stdexcept>
+#include <string>
 
 namespace cleave {
 namespace {
@@ -23,6 +24,8 @@ TEST(ExpectedSeconds, AreUnknownWithoutALine) {
     EXPECT_FALSE(expected_seconds(printed)) << printed;
 }
 
+constexpr int kPatience_ms = 10000;
+
 // Standard error as a terminal of so many columns; what came to it.
 class Terminal {
  public:
@@ -35,28 +38,41 @@ class Terminal {
     ::dup2(stderr_, STDERR_FILENO);
     for (const int descriptor : {stderr_, slave_, master_}) ::close(descriptor);
   }
-  std::string read() const {
+  // Until so many bytes have come: the system may hand them on in pieces. What came by then, where no more
+  // do.
+  std::string read(std::size_t size) const {
+    std::string all;
     char bytes[1000];
-    return {bytes, static_cast<std::size_t>(std::max<ssize_t>(::read(master_, bytes, sizeof bytes), 0))};
+    pollfd waits{.fd = master_, .events = POLLIN, .revents = 0};
+    while (all.size() < size && ::poll(&waits, 1, kPatience_ms) > 0) {
+      const ssize_t came = ::read(master_, bytes, sizeof bytes);
+      if (came <= 0) break;
+      all.append(bytes, static_cast<std::size_t>(came));
+    }
+    return all;
   }
 
  private:
   int stderr_, master_ = -1, slave_ = -1;
 };
 
+void expect(const std::string& text, const Terminal& terminal) {
+  EXPECT_EQ(terminal.read(text.size()), text);
+}
+
 TEST(ProgressLine, IsCutToTheTerminal) {
   const Terminal terminal(12);
   ProgressLine line("sweep");
   line.show("of \u00e4\u00f6\u00fc and more");
-  EXPECT_EQ(terminal.read(), "\rsweep: of \u00e4");
+  expect("\rsweep: of \u00e4", terminal);
   line.show("end");
-  EXPECT_EQ(terminal.read(), "\rsweep: end ");
+  expect("\rsweep: end ", terminal);
 }
 
 TEST(ProgressLine, IsWholeWhereTheTerminalSaysNoWidth) {
   const Terminal terminal(0);
   ProgressLine("sweep").show("a line that goes on and on and on");
-  EXPECT_EQ(terminal.read(), "\rsweep: a line that goes on and on and on\r\n");
+  expect("\rsweep: a line that goes on and on and on\r\n", terminal);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Scene files drawn at random: bodies of all simple shapes, of masses over four decades, thrown about in a pit or above a
-// floor, some joined to another or to the world.
+// Scene files drawn at random: bodies of all simple shapes, of masses over four decades, thrown about in a
+// pit or above a floor, some joined to another or to the world.
 #pragma once
 
 #include <cstdint>

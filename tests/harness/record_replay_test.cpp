@@ -234,8 +234,8 @@ const std::set<std::string> kOfTheWorld = {
     "run_id", "contact_cap_hits", "ode_messages", "max_penetration_m", "potential_energy_j", "state_hash",
     "velocity_spread_m_per_s", "problem_file", "joint_drift_m", "last_body_z_m",
     // Options that made the world.
-    "mu", "gravity_m_per_s2", "match_tolerance", "contact_cap", "quickstep_iterations", "ode_step_max_rows",
-    "ode_friction", "mode", "advance", "steps", "scene_options"};
+    "mu", "bound_sweeps", "gravity_m_per_s2", "match_tolerance", "contact_cap", "quickstep_iterations",
+    "ode_step_max_rows", "ode_friction", "mode", "advance", "steps", "scene_options"};
 
 TEST_F(ReplayOfARun, RowsAreThoseOfTheRun) {
   const CsvTable run = table("run"), replayed = table("replayed");

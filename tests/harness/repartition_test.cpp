@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/experiment/repartition.h"
 #include "tests/harness/run_program.h"
 
 namespace cleave {
@@ -73,6 +74,11 @@ TEST(Repartition, NamesWhatIsWrong) {
     EXPECT_NE(result.err.find("--repartition: "), std::string::npos) << result.err;
     EXPECT_NE(result.err.find(told), std::string::npos) << result.err;
   }
+}
+
+TEST(Repartition, WhatMeansTheSameIsWrittenAlike) {
+  EXPECT_EQ(read_repartition("--repartition", "drift:1e-1").text, "drift:0.1");
+  EXPECT_EQ(read_repartition("--repartition", "every:05").text, "every:5");
 }
 
 TEST(Repartition, IsReplayedOverConsecutiveStepsAndStored) {

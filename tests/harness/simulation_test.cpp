@@ -275,8 +275,7 @@ TEST(RunSummary, SaysWhenSolvesWaitedForACore) {
   EXPECT_EQ(summary.text().find("waited"), std::string::npos) << summary.text();
   row.t_s_waiting_ms = 25;
   summary.add(row);
-  EXPECT_NE(summary.text().find(
-                "the threads of the solves waited 30 ms for a core in solves of 150 ms"),
+  EXPECT_NE(summary.text().find("the threads of the solves waited 30 ms for a core in solves of 150 ms"),
             std::string::npos)
       << summary.text();
 }

@@ -1,5 +1,5 @@
-// cleave sweep and cleave rerun as a user gives them: cells run once, killed campaigns go on, failures are rows, and verify finds
-// what is damaged.
+// cleave sweep and cleave rerun as a user gives them: cells run once, killed campaigns go on, failures are
+// rows, and verify finds what is damaged.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -261,7 +261,8 @@ TEST(Sweep, ALockThatNobodyHoldsGoesFromACompleteCell) {
   EXPECT_EQ(campaign.failures(), "");
 }
 
-// The index of a build with local changes names the program itself; here it is as if another one had been there.
+// The index of a build with local changes names the program itself; here it is as if another one had been
+// there.
 TEST(Sweep, CellsOfAnotherBuildRunAgainAndThatIsSaid) {
   const Campaign campaign(kTiny);
   ASSERT_EQ(campaign.sweep().exit_code, 0);
@@ -328,7 +329,8 @@ TEST(Sweep, AChangedSpecRunsWhatIsNewAndKeepsWhatIsOld) {
       << collected.err;
 }
 
-// A campaign that was killed between its index and their checksums: what its directories vouch for stays known.
+// A campaign that was killed between its index and their checksums: what its directories vouch for stays
+// known.
 TEST(Sweep, AFailedCellOfAnEarlierSpecStaysWhereTheIndexHasNoChecksums) {
   const Campaign campaign(std::string(kEndless) + "[[include]]\nsteps = 4\nmeasure-every = 2\n");
   ASSERT_EQ(campaign.sweep({"--cell-seconds", "0.5"}).exit_code, 2);
@@ -831,7 +833,9 @@ TEST(Sweep, MergesSharesWithoutRunningAnything) {
   fs::remove(campaign.out() / "checksums");
   EXPECT_EQ(campaign.failures(), "");
 
-  for (const Words& words : {Words{"--shard", "1/2"}, Words{"--force"}, Words{"--dry-run"}}) {
+  for (const Words& words : {Words{"--shard", "1/2"}, Words{"--force"}, Words{"--dry-run"},
+                             Words{"--keep-failed"}, Words{"--jobs", "2"}, Words{"--pin", "1"},
+                             Words{"--cell-seconds", "9"}, Words{"--cell-memory-gb", "9"}}) {
     Words more = {"--merge"};
     more.insert(more.end(), words.begin(), words.end());
     const ProgramResult refused = campaign.sweep(more);
@@ -855,6 +859,7 @@ TEST(Rerun, RepeatsACellAndHoldsItsRowsAgainstIt) {
   ASSERT_EQ(campaign.sweep().exit_code, 0);
   const fs::path cell = campaign.cell();
   EXPECT_EQ(run_cleave({"rerun", cell}).exit_code, 0);
+  EXPECT_EQ(run_cleave({"rerun", cell, "--force"}).exit_code, 1);  // takes away what is nowhere
   const ProgramResult kept = run_cleave({"rerun", cell, "--threads", "2", "--out", campaign / "again"});
   EXPECT_EQ(kept.exit_code, 0) << kept.err;
   EXPECT_TRUE(kept.out.starts_with("ok    ")) << kept.out;

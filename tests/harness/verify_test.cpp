@@ -126,9 +126,9 @@ TemporaryDirectory* Verify::replayed_ = nullptr;
 TEST_F(Verify, PassesOnWhatReplayWrote) {
   const ProgramResult directory = run_cleave({"verify", out()});
   EXPECT_EQ(directory.exit_code, 0) << directory.out << directory.err;
-  // Of the directory: its list of files, four files, no others; the manifest, its state and run id. Per file: the
-  // problem; 5 solutions with label, residual, velocity; 4 partitions with label, ids, split. Of steps.csv: header,
-  // cells, limits, sums, options twice, places, problems, counts, and two a row.
+  // Of the directory: its list of files, four files, no others; the manifest, its state and run id. Per file:
+  // the problem; 5 solutions with label, residual, velocity; 4 partitions with label, ids, split. Of
+  // steps.csv: header, cells, limits, sums, options twice, places, problems, counts, and two a row.
   const int checks = 6 + 3 + 2 * (1 + 5 * 3 + 4 * 3) + 9 + 2 * 2 * 5;
   EXPECT_EQ(count_lines(directory.out), checks) << directory.out;
   EXPECT_EQ(directory.out.find("FAIL"), std::string::npos);

@@ -1,4 +1,5 @@
-// cleave export --format vtu: surfaces are closed and enclose the volume of their bodies, and every cell says what the file knows of it.
+// cleave export --format vtu: surfaces are closed and enclose the volume of their bodies, and every cell says
+// what the file knows of it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +34,8 @@ ProblemShapes one_shape(GeomType type, std::array<double, 3> size, const Corners
   return shapes;
 }
 
-// By Gauss, of triangles from the first corner of every polygon. Every edge has to be met once in each direction.
+// By Gauss, of triangles from the first corner of every polygon. Every edge has to be met once in each
+// direction.
 double enclosed_volume(const PolygonMesh& mesh) {
   double volume = 0;
   std::map<std::pair<int, int>, int> edges;

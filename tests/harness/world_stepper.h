@@ -31,7 +31,7 @@ class WorldStepper {
     const std::vector<ContactPoint> contacts = world_->collide(8, nullptr);
     problem_ = extract(*world_, contacts, options_, memory_);
     solution_.impulse = problem_.warm_impulse;
-    if (const auto set = friction_model(options_.friction).set) set(problem_);
+    if (const auto set = friction_model(options_.friction).set) set(options_, problem_);
     if (options_.friction == FrictionModel::box_converged) {
       unconverged_bounds_ +=
           !converge_friction_bounds(problem_, *solver_, part_of_body_, solution_).converged;

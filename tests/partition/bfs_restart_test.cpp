@@ -16,8 +16,9 @@ constexpr std::uint64_t kSeeds = 300;
 
 bool adjacent(const BodyGraph& graph, int a, int b) { return std::ranges::count(graph.neighbours(a), b) > 0; }
 
-// One search over all bodies, written straight from its definition: the queue begins with the lowest body that was never
-// in it; whoever leaves it counts, and puts the neighbours that were never in it behind the others, ascending.
+// One search over all bodies, written straight from its definition: the queue begins with the lowest body
+// that was never in it; whoever leaves it counts, and puts the neighbours that were never in it behind the
+// others, ascending.
 Partition chopped_search(const BodyGraph& graph, int max_bodies) {
   const int n = graph.body_count();
   std::vector<bool> was_queued(n, false);

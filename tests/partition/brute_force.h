@@ -30,7 +30,8 @@ std::string ids_fault(const Bodies& bodies, const Partition& partition);
 std::string grown_fault(const Bodies& bodies, const Partition& partition, int max_bodies);
 
 // ids_fault; parts as many as before; no part grown over floor((1 + max_growth) max_bodies) unless
-// as_printed; the cut in the unit of the options counted right before and after, and not increased unless it may be.
+// as_printed; the cut in the unit of the options counted right before and after, and not increased unless it
+// may be.
 std::string refined_fault(const Bodies& bodies, const Partition& before, const Partition& after,
                           const RefineOptions& options, const RefineSummary& summary,
                           bool may_raise_cut = false);

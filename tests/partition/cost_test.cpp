@@ -426,7 +426,8 @@ std::unique_ptr<Partitioner> auto_by_term(int term) {
   return make_partitioner("auto@calibration=" + fingerprint);
 }
 
-// A calibration in which only factoring the parts costs anything makes them small, one in which only parts cost, one.
+// A calibration in which only factoring the parts costs anything makes them small, one in which only parts
+// cost, one.
 TEST(Auto, follows_the_calibration) {
   Random random(3);
   const BodyGraph graph = pile(random, 6, 6, 4).graph();

@@ -22,7 +22,8 @@ Partition split(const Bodies& bodies, int max_bodies) {
   return make_partitioner("geometric@max-bodies=" + std::to_string(max_bodies))->run(bodies.graph());
 }
 
-// The definition of the head comment: sets are sorted as a whole and cut in two. Gives the set of each body a name.
+// The definition of the head comment: sets are sorted as a whole and cut in two. Gives the set of each body a
+// name.
 void bisect(const std::vector<double>& position_m, std::vector<int> bodies, int parts,
             const std::string& name, std::vector<std::string>& name_of_body) {
   if (parts == 1) {

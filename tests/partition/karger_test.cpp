@@ -1,4 +1,5 @@
-// karger against its twin, on graphs whose least cuts are known, and with the probabilities that theory states.
+// karger against its twin, on graphs whose least cuts are known, and with the probabilities that theory
+// states.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -137,7 +138,8 @@ TEST(Contraction, refuses_as_its_twin_does) {
   EXPECT_GT(refused, 1000);
 }
 
-// How often something is true of `runs` dice, and the deviation of that number if it is so with that probability.
+// How often something is true of `runs` dice, and the deviation of that number if it is so with that
+// probability.
 int times(int runs, const std::function<bool(Dice&)>& is_true) {
   int count = 0;
   for (int seed = 0; seed < runs; ++seed) {
@@ -207,8 +209,8 @@ TEST(Contraction, finds_the_least_cut_at_least_as_often_as_stated) {
   }
 }
 
-// What the analysis of Karger & Stein gives: a least cut outlives a contraction from n to t nodes with probability
-// t (t - 1) / (n (n - 1)) at least, and one of two is enough.
+// What the analysis of Karger & Stein gives: a least cut outlives a contraction from n to t nodes with
+// probability t (t - 1) / (n (n - 1)) at least, and one of two is enough.
 double stated_by_recursion(int n) {
   if (n <= 6) return 2.0 / (n * (n - 1));
   const double fewer = std::ceil(n / std::sqrt(2.0) + 1);
@@ -236,8 +238,8 @@ TEST(KargerStein, finds_the_least_cut_of_small_graphs_at_least_as_often_as_state
   }
 }
 
-// A ring with two links a little weaker has one least cut and many that are nearly as light, which is the hardest
-// there is. One contraction would find it with little more than 2 / (n (n - 1)).
+// A ring with two links a little weaker has one least cut and many that are nearly as light, which is the
+// hardest there is. One contraction would find it with little more than 2 / (n (n - 1)).
 TEST(KargerStein, finds_the_least_cut_of_rings_and_dumb_bells_at_least_as_often_as_stated) {
   constexpr int kRuns = 300;
   for (const int n : {12, 30}) {

@@ -1,5 +1,5 @@
-// Partitioners of METIS and SCOTCH: what these libraries share with the whole process stays as it was, and the same
-// parts come out whatever happened before and beside.
+// Partitioners of METIS and SCOTCH: what these libraries share with the whole process stays as it was, and
+// the same parts come out whatever happened before and beside.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <unistd.h>
@@ -180,8 +180,8 @@ TEST_P(LibraryPartitioner, cuts_less_of_what_it_weighs) {
   EXPECT_LT(weighed, counted);
 }
 
-// Each parameter reaches the library: some value of it changes the parts. metis-kway draws by its seed only while it
-// coarsens, down to 30 bodies a part.
+// Each parameter reaches the library: some value of it changes the parts. metis-kway draws by its seed only
+// while it coarsens, down to 30 bodies a part.
 TEST_P(LibraryPartitioner, heeds_all_its_parameters) {
   const BodyGraph graph = large_pile(1);
   const std::string large_parts = "@max-bodies=60";

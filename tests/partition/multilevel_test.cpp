@@ -1,4 +1,5 @@
-// Joining, splitting and bisecting the graphs of a multilevel scheme, against counts from scratch and known cuts.
+// Joining, splitting and bisecting the graphs of a multilevel scheme, against counts from scratch and known
+// cuts.
 #include <gtest/gtest.h>
 
 #include <algorithm>

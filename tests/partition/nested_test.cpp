@@ -212,7 +212,8 @@ TEST(Nested, takes_sets_that_lose_one_body_at_a_time) {
     ASSERT_EQ(nested.parent_of_part[inner], inner + 1);
 }
 
-// By hand: a path of eight bodies, halved until two are left. Leaves in order of creation, inner nodes backwards.
+// By hand: a path of eight bodies, halved until two are left. Leaves in order of creation, inner nodes
+// backwards.
 TEST(Nested, numbers_nodes_as_they_are_made) {
   const Bodies path{"path",
                     std::vector<double>(8, 1.0),

@@ -223,7 +223,8 @@ struct Move {
   int body, part;
 };
 
-// The allowed move of greatest gain among bodies that are free; ties to the lowest body, then to the lowest part.
+// The allowed move of greatest gain among bodies that are free; ties to the lowest body, then to the lowest
+// part.
 bool find_move(const BodyGraph& graph, EdgeWeight unit, int most, const Partition& partition,
                const std::vector<char>& is_locked, Move& best) {
   const std::vector<int> sizes = part_sizes(partition);

@@ -1,5 +1,5 @@
-// The counted work of cost_features.h, the slow and obvious way: matrices of truth values, and forward substitutions of
-// single right-hand sides on their pattern.
+// The counted work of cost_features.h, the slow and obvious way: matrices of truth values, and forward
+// substitutions of single right-hand sides on their pattern.
 #pragma once
 
 #include <span>
@@ -20,7 +20,8 @@ struct SlowFactor {
 SlowFactor slow_factor(const BodyGraph& graph, std::span<const int> bodies,
                        std::span<const int> stage_of_body);
 
-// separator_nodes of cut_cover.h: node by node from the root, the body with the most open edges looked for among all.
+// separator_nodes of cut_cover.h: node by node from the root, the body with the most open edges looked for
+// among all.
 std::vector<int> slow_separator_nodes(const BodyGraph& graph, const Partition& partition);
 
 CostFeatures slow_cost_features(const BodyGraph& graph, const Partition& partition, CostKernel kernel,

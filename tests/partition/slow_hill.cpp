@@ -1,5 +1,5 @@
-// fm-hill and kl-hill from their definitions: in every step all exchanges of free bodies are listed with gains counted anew,
-// and the partition of every moment of a pass is kept.
+// fm-hill and kl-hill from their definitions: in every step all exchanges of free bodies are listed with
+// gains counted anew, and the partition of every moment of a pass is kept.
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -15,8 +15,8 @@ struct SlowClimb {
   int most_bodies;  // of a part
   int patience;
 
-  // known: bodies whose moves count at the beginning; those next to what has moved follow. Returns the bodies whose moves were
-  // kept.
+  // known: bodies whose moves count at the beginning; those next to what has moved follow. Returns the bodies
+  // whose moves were kept.
   std::set<int> run(std::set<int> known, std::set<int> locked, Partition& partition) const;
 };
 

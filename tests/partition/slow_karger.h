@@ -1,5 +1,6 @@
-// The definitions of partition/contraction.h, karger_stein.h and karger.cpp with weight matrices and lists, every
-// number computed anew. Only the dice are shared with what is checked, so that equal dice give equal partitions.
+// The definitions of partition/contraction.h, karger_stein.h and karger.cpp with weight matrices and lists,
+// every number computed anew. Only the dice are shared with what is checked, so that equal dice give equal
+// partitions.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
-// Joining of leftovers (leftovers.h) once more, straight from its definition: everything is counted anew for every pair.
+// Joining of leftovers (leftovers.h) once more, straight from its definition: everything is counted anew for
+// every pair.
 #pragma once
 
 #include "partition/leftovers.h"

@@ -1,4 +1,5 @@
-// The steps of merge-small (merge_small.h) once more, straight from their definitions: everything is counted anew at every step.
+// The steps of merge-small (merge_small.h) once more, straight from their definitions: everything is counted
+// anew at every step.
 #pragma once
 
 #include "partition/local_climbs.h"

@@ -1,5 +1,5 @@
-// The recursion of nested.h and leftovers.h once more, straight from their definitions: sets are lists of bodies, and
-// the graph of a set is built anew from the links among them.
+// The recursion of nested.h and leftovers.h once more, straight from their definitions: sets are lists of
+// bodies, and the graph of a set is built anew from the links among them.
 #pragma once
 
 #include "partition/nested.h"

@@ -49,7 +49,8 @@ struct Bodies {
   BodyGraph graph() const;
 };
 
-// Counted the slow and obvious way, for slow twins: bodies in a part, and rows between a body and a part, itself left out.
+// Counted the slow and obvious way, for slow twins: bodies in a part, and rows between a body and a part,
+// itself left out.
 int bodies_in(const Partition& partition, int part);
 long rows_into(const Bodies& bodies, const Partition& partition, int body, int part);
 

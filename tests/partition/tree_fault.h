@@ -8,8 +8,8 @@
 
 namespace cleave::partition_test {
 
-// "" when all is well, else one line. Leaves 0..parts-1 first, none empty, every parent after its children, one root
-// that all nodes hang from, and at least two children of an inner node.
+// "" when all is well, else one line. Leaves 0..parts-1 first, none empty, every parent after its children,
+// one root that all nodes hang from, and at least two children of an inner node.
 std::string tree_fault(const Bodies& bodies, const Partition& nested);
 
 }  // namespace cleave::partition_test

@@ -74,7 +74,8 @@ std::vector<Start> starts(Random& random, const BodyGraph& graph) {
   return result;
 }
 
-// The twins of those that climb hills keep every moment of a pass, that of fm-cost counts every candidate from scratch.
+// The twins of those that climb hills keep every moment of a pass, that of fm-cost counts every candidate
+// from scratch.
 std::uint64_t seeds_of(const RefinerTwin& twin) {
   const std::string name = twin.name;
   return name.ends_with("-hill") || name == "fm-cost" ? kSeeds / 5 : kSeeds;

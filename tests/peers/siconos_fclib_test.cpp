@@ -1,5 +1,5 @@
-// What is exported for FCLIB, read back by the library of FCLIB's own, is a problem of Siconos whose solution is ours. (Debian's
-// Siconos is built without its own reader of these files, which calls the same library.)
+// What is exported for FCLIB, read back by the library of FCLIB's own, is a problem of Siconos whose solution
+// is ours. (Debian's Siconos is built without its own reader of these files, which calls the same library.)
 #include <gtest/gtest.h>
 #include <numerics/Friction_cst.h>
 #include <numerics/GlobalFrictionContactProblem.h>

@@ -1,4 +1,5 @@
-// Siconos on Coulomb's law: closed forms of a block on a plane, its error against the formula, piles against the law.
+// Siconos on Coulomb's law: closed forms of a block on a plane, its error against the formula, piles against
+// the law.
 #include "harness/peers/siconos.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +36,8 @@ StepProblem landing_point(double speed, double angle_rad, double mu, double mass
   return with_coulomb(problem);
 }
 
-// The largest gap to the law over all contacts, from w = A lambda - g, without a projection: what Siconos measures by.
+// The largest gap to the law over all contacts, from w = A lambda - g, without a projection: what Siconos
+// measures by.
 double worst_gap(const StepProblem& problem, std::span<const double> impulse) {
   const DenseProblem dense = make_dense_problem(problem);
   std::vector<double> w(dense.rows);

@@ -1,5 +1,5 @@
-// A race that is there on purpose: it has to end the program with the exit code of a finding. And what only OpenMP
-// orders: it has to be none, or the sanitiser does not see OpenMP's order.
+// A race that is there on purpose: it has to end the program with the exit code of a finding. And what only
+// OpenMP orders: it has to be none, or the sanitiser does not see OpenMP's order.
 #include <gtest/gtest.h>
 #include <omp.h>
 
@@ -21,8 +21,8 @@ void wait_for(const std::atomic<int>& step, int value) {
   }
 }
 
-// Both tasks are under way before either adds, and then one adds after the other: of two accesses at the same instant
-// the sanitiser may miss one. Relaxed order: nothing that it could take for order.
+// Both tasks are under way before either adds, and then one adds after the other: of two accesses at the same
+// instant the sanitiser may miss one. Relaxed order: nothing that it could take for order.
 void add_unordered(void* context, int index) {
   Shared& shared = *static_cast<Shared*>(context);
   if (index == 0) {

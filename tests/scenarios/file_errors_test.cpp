@@ -114,7 +114,8 @@ TEST(FileErrors, NumbersAndRanges) {
   });
 }
 
-// Found by a fuzzer: an assertion of the library ended the program, and some characters have no defined answer there.
+// Found by a fuzzer: an assertion of the library ended the program, and some characters have no defined
+// answer there.
 TEST(FileErrors, WhatTheParserDoesNotExpect) {
   const std::string rule = ": not TOML: a character beyond ASCII that is in no comment and no string";
   expect_errors({

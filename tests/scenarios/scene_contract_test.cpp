@@ -50,7 +50,8 @@ std::vector<Case> all_cases() {
 // The ladder's scenes are set up to break solvers: a few steps of an iterative one send bodies anywhere.
 bool of_ladder(const ShippedScene& scene) { return scene.name.starts_with("ladder_"); }
 
-// Widest gap between the anchors of a ball joint or hinge; sliders and fixed joints have none, and begin where they are.
+// Widest gap between the anchors of a ball joint or hinge; sliders and fixed joints have none, and begin
+// where they are.
 double gap_m(dJointID joint) {
   const dJointType type = dJointGetType(joint);
   if (type == dJointTypeSlider || type == dJointTypeFixed) return 0;

@@ -29,8 +29,9 @@ TEST(SceneSettings, TextsNameOptionValueAndRange) {
   EXPECT_EQ(error_of("rock_pile", "bodies", "2.5"), "--bodies: '2.5' is not a whole number in [1, 200000]");
   EXPECT_EQ(error_of("rock_pile", "rock-shape", "cone"),
             "--rock-shape: 'cone' is unknown (did you mean 'convex'?); choices: box, sphere, clump, convex");
-  EXPECT_EQ(error_of("rock_pile", "links", "3"),
-            "--links: scene 'rock_pile' has no such option (it has: --bodies, --depth, --rock-shape, --mass)");
+  EXPECT_EQ(
+      error_of("rock_pile", "links", "3"),
+      "--links: scene 'rock_pile' has no such option (it has: --bodies, --depth, --rock-shape, --mass)");
   EXPECT_EQ(error_of("chain_drop", "bob-mass", "nan"), "--bob-mass: nan is not in [1e-06, 1e+09]");
   EXPECT_EQ(error_of("rock_pile", "mass", "10,-1"), "--mass: -1 is not in [1e-06, 1e+09]");
   EXPECT_EQ(error_of("rock_pile", "mass", "10,,1"), "--mass: '' is not a number in [1e-06, 1e+09]");

@@ -45,6 +45,7 @@ USED_BY = {
     "llvm-14": ("tests/sanitised/sanitised.cmake", "llvm-symbolizer"),
     "libomp-14-dev": ("tests/sanitised/sanitised.cmake", "archer"),
     "qemu-user": ("tests/CMakeLists.txt", "qemu-x86_64"),
+    "clang-format": ("tests/scripts/format_test.py", "clang-format"),
     "povray": ("scripts/cleave_scripts/motion/povray_scene.py", "povray"),
     "npm": ("scripts/cleave_scripts/viewer/page.py", "npm"),
 }

@@ -30,7 +30,8 @@ void count(void* memory) noexcept {
 }
 
 void* allocate(std::size_t size, std::size_t alignment) noexcept {
-  // Not aligned_alloc: it asks for a multiple of the alignment, and in the excess no sanitiser sees an overrun.
+  // Not aligned_alloc: it asks for a multiple of the alignment, and in the excess no sanitiser sees an
+  // overrun.
   void* memory = nullptr;
   if (::posix_memalign(&memory, std::max(alignment, sizeof(void*)), std::max(size, std::size_t{1})) != 0)
     return nullptr;

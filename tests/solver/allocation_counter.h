@@ -1,6 +1,6 @@
-// Counts calls of the global operator new (all forms, all threads) while an AllocationCount lives, and their bytes. The
-// replacement of operator new is part of the test program that links allocation_counter.cpp; malloc inside C
-// libraries is not seen.
+// Counts calls of the global operator new (all forms, all threads) while an AllocationCount lives, and their
+// bytes. The replacement of operator new is part of the test program that links allocation_counter.cpp;
+// malloc inside C libraries is not seen.
 #pragma once
 
 namespace cleave {

@@ -1,5 +1,5 @@
-// Branches of the elimination tree: every supernode in one, subtrees only, and nothing that one adds outside of itself
-// without its place among the rows below the root.
+// Branches of the elimination tree: every supernode in one, subtrees only, and nothing that one adds outside
+// of itself without its place among the rows below the root.
 #include <gtest/gtest.h>
 
 #include <algorithm>

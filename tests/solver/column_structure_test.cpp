@@ -1,4 +1,5 @@
-// Rows of the factor's columns against elimination by hand, and the order that is chosen: the one with fewer flops.
+// Rows of the factor's columns against elimination by hand, and the order that is chosen: the one with fewer
+// flops.
 #include "solver/column_structure.h"
 
 #include <gtest/gtest.h>

@@ -31,7 +31,8 @@ constexpr double kCompliance = 0.25, kPush = 0.5;  // the block would sink by kP
 
 Paper make_paper(ContactSet set, double angle, double speed, double mu = 0.5, int tangents = 2);
 
-// The problem with that set in the place of the boxes of the contacts chosen by the seed, about `share` of all.
+// The problem with that set in the place of the boxes of the contacts chosen by the seed, about `share` of
+// all.
 StepProblem with_sets(StepProblem problem, ContactSet set, double share = 1, std::uint64_t seed = 1);
 
 // A pile of such contacts, whose tangents are to move.

@@ -1,5 +1,5 @@
-// The judge on contacts that have a cone or Coulomb's law: against a projection by search, against the block on a
-// plane, and with errors planted.
+// The judge on contacts that have a cone or Coulomb's law: against a projection by search, against the block
+// on a plane, and with errors planted.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,8 +19,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The nearest point of { (n, t): |t| <= mu n }: with n chosen, t is shortened where it is too long, and what is left
-// to choose is one number, whose distance is convex.
+// The nearest point of { (n, t): |t| <= mu n }: with n chosen, t is shortened where it is too long, and what
+// is left to choose is one number, whose distance is convex.
 std::array<double, 3> search_projection(const std::array<double, 3>& x, double mu) {
   const auto point = [&](double n) {
     const double length = std::hypot(x[1], x[2]);

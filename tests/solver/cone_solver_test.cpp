@@ -1,5 +1,5 @@
-// Friction cones and Coulomb's law by the interior point: the judge's verdict through every kernel, answers on paper, and the
-// pieces (projection, weights, polish) by themselves.
+// Friction cones and Coulomb's law by the interior point: the judge's verdict through every kernel, answers
+// on paper, and the pieces (projection, weights, polish) by themselves.
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -32,7 +32,8 @@ Vector3d draw(SeededRandom& random, double size) {
   return {random.uniform(-size, size), random.uniform(-size, size), random.uniform(-size, size)};
 }
 
-// P is the nearest point of K if and only if P is in K, y - P in its polar, and the two are orthogonal (Moreau).
+// P is the nearest point of K if and only if P is in K, y - P in its polar, and the two are orthogonal
+// (Moreau).
 TEST(ConeTest, ProjectsOnTheNearestPoint) {
   SeededRandom random(3);
   for (int trial = 0; trial < 2000; ++trial) {
@@ -187,7 +188,8 @@ TEST_P(ConeSolverTest, ConesAreExactAtEveryCompliance) {
   EXPECT_GT(surface, 100);
 }
 
-// One box on another of a hundred-thousandth of its mass, both spinning: the first steps of the iteration stop short.
+// One box on another of a hundred-thousandth of its mass, both spinning: the first steps of the iteration
+// stop short.
 TEST_P(ConeSolverTest, ConesUnderAHeavyBodyThatSpinsAreExact) {
   constexpr double kRatio = 1e5;
   for (const double cfm : {1e-6, 1e-7, 1e-8, 0.0}) {
@@ -372,8 +374,8 @@ TEST_P(ConeSolverTest, AKeptIterateIsThereBeforeAndAfterAStep) {
   EXPECT_NE(next, kept);
 }
 
-// Near the answer a step squares the error, or under Coulomb's law leaves a hundredth: not so with any eigenvalue of the
-// derivative wrong, nor without the change of the shift, nor with another sign of it.
+// Near the answer a step squares the error, or under Coulomb's law leaves a hundredth: not so with any
+// eigenvalue of the derivative wrong, nor without the change of the shift, nor with another sign of it.
 TEST_P(ConeSolverTest, NewtonConvergesFromNearby) {
   for (const ContactSet set : {ContactSet::cone, ContactSet::coulomb}) {
     const StepProblem problem = make_cone_pile(4, 1e-3, set);

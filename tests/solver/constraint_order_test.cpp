@@ -42,7 +42,8 @@ StepProblem pile_with_joints(int seed) {
   return problem;
 }
 
-// The constraint of each visit of one sweep. Rows of a constraint must be visited together and in their order.
+// The constraint of each visit of one sweep. Rows of a constraint must be visited together and in their
+// order.
 std::vector<int> visited(const StepProblem& problem, std::span<const RowGroup> sweep) {
   std::vector<int> constraints;
   std::set<int> rows;
@@ -73,7 +74,8 @@ std::vector<int> order_of(const StepProblem& problem, OrderKind kind, int seed =
   return visited(problem, order.next(step));
 }
 
-// By relaxation until nothing changes: a constraint is one further than the least of those that it shares a body with.
+// By relaxation until nothing changes: a constraint is one further than the least of those that it shares a
+// body with.
 std::map<int, int> slow_levels(const StepProblem& problem) {
   const int m = problem.row_count();
   std::vector<int> level(m, m + 1);

@@ -10,13 +10,14 @@
 
 namespace cleave {
 
-// Where a wrong factor is planted, what is carried is that of another matrix: diagonal, with entries of this sign and size.
+// Where a wrong factor is planted, what is carried is that of another matrix: diagonal, with entries of this
+// sign and size. mflop: what a factorisation is said to take.
 class Dear : public KernelWrapper {
  public:
   explicit Dear(std::optional<double> planted = {},
-                std::unique_ptr<Kernel> kernel = make_monolithic_kernel(Settings()))
-      : KernelWrapper(std::move(kernel)), planted_(planted) {}
-  double local_mflop() const override { return 1e3; }
+                std::unique_ptr<Kernel> kernel = make_monolithic_kernel(Settings()), double mflop = 1e3)
+      : KernelWrapper(std::move(kernel)), planted_(planted), mflop_(mflop) {}
+  double local_mflop() const override { return mflop_; }
   double apply_mflop() const override { return 0; }
   void apply_factor(std::span<const double> f, std::span<double> x, ParallelTasks& tasks) override {
     if (!planted_) return KernelWrapper::apply_factor(f, x, tasks);
@@ -25,6 +26,7 @@ class Dear : public KernelWrapper {
 
  private:
   std::optional<double> planted_;
+  double mflop_;
 };
 
 }  // namespace cleave

@@ -1,5 +1,5 @@
-// Assembly and factorisation, large fronts in tiles: the factor that a front has as a whole, and the same bytes however many threads there are and
-// in whatever order tasks that are ready come.
+// Assembly and factorisation, large fronts in tiles: the factor that a front has as a whole, and the same
+// bytes however many threads there are and in whatever order tasks that are ready come.
 #include "solver/factor_tasks.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// A factorisation that keeps the branches in which no weight has changed gives the bytes of a whole one.
+// A factorisation that keeps the branches, or the parts, in which no weight has changed gives the bytes of a
+// whole one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,8 +17,8 @@
 namespace cleave {
 namespace {
 
-std::vector<std::string> names_of_kernels_with_branches() {
-  return {"monolithic", "schur-bodies", "schur-nested"};
+std::vector<std::string> names_of_kernels_that_keep() {
+  return {"monolithic", "schur-bodies", "schur-nested", "schur-rows"};
 }
 
 class KeptBranchesTest : public testing::TestWithParam<std::string> {
@@ -42,7 +43,8 @@ class KeptBranchesTest : public testing::TestWithParam<std::string> {
     return dv;
   }
 
-  // Factors d_ with the kernel that has factored before and with a new one. The share of the work that was done.
+  // Factors d_ with the kernel that has factored before and with a new one. The share of the work that was
+  // done.
   double factor_and_compare(std::span<const WeightBlock> blocks = {}) {
     const auto fresh = make_kernel();
     EXPECT_TRUE(kernel_->factor({d_, blocks}, tasks_));
@@ -51,6 +53,12 @@ class KeptBranchesTest : public testing::TestWithParam<std::string> {
     const double whole = fresh->local_mflop() + fresh->interface_mflop();
     EXPECT_NEAR(fresh->done_mflop(), whole, 1e-9 * whole);
     return kernel_->done_mflop() / whole;
+  }
+
+  // The share of the work that is done whatever stays: the dense interface of schur-rows.
+  double share_of_every_factorisation() {
+    if (GetParam() != "schur-rows") return 0;
+    return kernel_->interface_mflop() / (kernel_->interface_mflop() + kernel_->local_mflop());
   }
 
   void flip(int row) { d_[row] = d_[row] > 0 ? 0 : 1 / problem_.compliance[row]; }
@@ -73,12 +81,13 @@ TEST_P(KeptBranchesTest, GiveTheBytesOfAWholeFactorisation) {
     for (int flips = 1 + k % 3; flips > 0; --flips) flip(static_cast<int>(random() % d_.size()));
     least = std::min(least, factor_and_compare());
   }
-  EXPECT_LT(least, 0.8);
+  const double always = share_of_every_factorisation();
+  EXPECT_LT(least, always + 0.8 * (1 - always));
 }
 
 TEST_P(KeptBranchesTest, AreAllWhereNothingChanges) {
   factor_and_compare();
-  EXPECT_EQ(factor_and_compare(), 0);
+  EXPECT_NEAR(factor_and_compare(), share_of_every_factorisation(), 1e-12);
 }
 
 // A solver does not bind its kernel again where the bodies of all rows are those of the step before.
@@ -111,7 +120,7 @@ TEST_P(KeptBranchesTest, AreNoneOfAnotherStepOrAnotherBasis) {
   EXPECT_NEAR(factor_and_compare(), 1, 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, KeptBranchesTest, testing::ValuesIn(names_of_kernels_with_branches()),
+INSTANTIATE_TEST_SUITE_P(Kernels, KeptBranchesTest, testing::ValuesIn(names_of_kernels_that_keep()),
                          [](const auto& info) {
                            std::string name = info.param;
                            std::ranges::replace(name, '-', '_');

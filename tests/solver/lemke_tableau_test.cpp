@@ -1,4 +1,5 @@
-// Lemke's pivots on bare linear complementarity problems: what they end with is checked against the definition.
+// Lemke's pivots on bare linear complementarity problems: what they end with is checked against the
+// definition.
 #include "solver/baselines/lemke_tableau.h"
 
 #include <gtest/gtest.h>
@@ -48,8 +49,8 @@ void expect_solved(const Lcp& lcp, const Ended& ended, double tolerance) {
   }
 }
 
-// M = B B^T + skew, B of integers and of less than full rank as often as not; q = s - M z with whole s, z >= 0, of which
-// many are zero: solvable, and full of ties.
+// M = B B^T + skew, B of integers and of less than full rank as often as not; q = s - M z with whole s, z >=
+// 0, of which many are zero: solvable, and full of ties.
 Lcp make_degenerate(std::uint64_t seed) {
   SeededRandom random(seed);
   const int n = random.integer(1, 12), rank = random.integer(1, n);
@@ -84,8 +85,8 @@ TEST(LemkeTableauTest, DegenerateSemidefiniteProblemsAreSolved) {
   }
 }
 
-// Kostreva, Cycling in linear complementarity problems, Mathematical Programming 16, 1979: all rows tie at once, and a
-// careless choice among them cycles.
+// Kostreva, Cycling in linear complementarity problems, Mathematical Programming 16, 1979: all rows tie at
+// once, and a careless choice among them cycles.
 TEST(LemkeTableauTest, KostrevasProblemDoesNotCycle) {
   const Lcp lcp{3, {1, 2, 0, 0, 1, 2, 2, 0, 1}, {-1, -1, -1}};
   const Ended ended = run_lemke(lcp, 100);
@@ -93,8 +94,9 @@ TEST(LemkeTableauTest, KostrevasProblemDoesNotCycle) {
   for (const double z : ended.z) EXPECT_NEAR(z, 1.0 / 3, 1e-12);
 }
 
-// Murty, Computational complexity of complementary pivot methods, Mathematical Programming Study 7, 1978, with M lower
-// triangular, and Fathi, Mathematical Programming 17, 1979, with the symmetric M = L L^T of all ties: 2^n pivots each.
+// Murty, Computational complexity of complementary pivot methods, Mathematical Programming Study 7, 1978,
+// with M lower triangular, and Fathi, Mathematical Programming 17, 1979, with the symmetric M = L L^T of all
+// ties: 2^n pivots each.
 TEST(LemkeTableauTest, MurtysAndFathisProblemsTakeAsManyPivotsAsProven) {
   for (int n = 2; n <= 8; ++n) {
     Lcp murty{n, std::vector<double>(n * n), std::vector<double>(n)}, fathi = murty;

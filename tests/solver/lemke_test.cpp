@@ -1,5 +1,5 @@
-// Solver `lemke` on step problems: bounds of every shape against the oracle, rows that depend on others with and
-// without compliance, contradictions, and its limit of rows.
+// Solver `lemke` on step problems: bounds of every shape against the oracle, rows that depend on others with
+// and without compliance, contradictions, and its limit of rows.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -42,7 +42,8 @@ void expect_oracle(const SmallProblemOptions& options, double tolerance) {
   }
 }
 
-// Not one miss: bilateral rows, bounds on one side and both, equal bounds, friction boxes, copies and mirrored copies.
+// Not one miss: bilateral rows, bounds on one side and both, equal bounds, friction boxes, copies and
+// mirrored copies.
 TEST(LemkeTest, SmallProblemsMatchTheOracle) {
   expect_oracle({}, 1e-9);
   expect_oracle({.least_cfm = 1e-8, .most_cfm = 1e-5, .feasible = true}, 1e-9);
@@ -159,7 +160,10 @@ TEST(LemkeTest, MemoryIsAskedForFirst) {
   const StepProblem problem = make_pile(1, {.columns = 1, .rows = 1, .layers = 2});
   Solution solution = cold_start(problem);
   const auto solver = make_step_solver("lemke", {.memory_limit_bytes = 10000});
-  EXPECT_THROW(solver->solve(problem, single_part(problem.body_count()), solution), std::bad_alloc);
+  const SolveSummary refused = solver->solve(problem, single_part(problem.body_count()), solution);
+  EXPECT_EQ(refused.status, SolveStatus::out_of_memory);
+  EXPECT_TRUE(refused.message.ends_with(", the limit is 10.0 kB")) << refused.message;
+  EXPECT_GT(refused.factor_predicted_mb, 0.01);
   EXPECT_GT(solve_by("lemke", problem).summary.factor_predicted_mb, 0.01);
 }
 

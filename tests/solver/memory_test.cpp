@@ -1,5 +1,5 @@
-// Memory of a factorisation: what is predicted before it is allocated is what it takes, and what is above the limit is
-// refused before it takes any.
+// Memory of a factorisation: what is predicted before it is allocated is what it takes, and what is above the
+// limit is refused before it takes any.
 #include <gtest/gtest.h>
 #include <malloc.h>
 
@@ -22,8 +22,8 @@
 namespace cleave {
 namespace {
 
-// A prediction is at most so many times what is taken. Lists that grow as they are filled are counted twice; of the oracle,
-// what a product takes for a moment is not seen here.
+// A prediction is at most so many times what is taken. Lists that grow as they are filled are counted twice;
+// of the oracle, what a product takes for a moment is not seen here.
 constexpr double kMostOverTaken = 1.5, kMostOverTakenDense = 2;
 
 std::vector<std::string> kernel_names() {
@@ -187,6 +187,26 @@ TEST(MemoryCountTest, StaysAtTheGreatestNumber) {
   MemoryCount square;
   square.add<double>(1ull << 40, 1ull << 40);
   EXPECT_EQ(square.bytes(), kNoMemoryLimit);
+}
+
+TEST(MemoryCountTest, WhatIsBeyondCountingIsRefusedWithoutALimitToo) {
+  MemoryCount memory;
+  memory.add<char>(kNoMemoryLimit - 1);
+  EXPECT_NO_THROW(MemoryBudget().request(memory));
+  memory.add<char>(1);
+  EXPECT_THROW(MemoryBudget().request(memory), MemoryRefused);
+}
+
+TEST(LemkeMemory, LimitDecidesTheStatus) {
+  const StepProblem pile = make_pile(3, {.columns = 2, .rows = 2, .layers = 2});
+  Solution solution = cold_start(pile);
+  const SolveSummary enough = make_step_solver("lemke")->solve(pile, {}, solution);
+  ASSERT_EQ(enough.status, SolveStatus::ok) << enough.message;
+  const auto needed = static_cast<std::uint64_t>(std::llround(1e6 * enough.factor_predicted_mb));
+  const SolveOptions tight{.memory_limit_bytes = needed - 1};
+  const SolveSummary refused = make_step_solver("lemke", tight)->solve(pile, {}, solution);
+  EXPECT_EQ(refused.status, SolveStatus::out_of_memory);
+  EXPECT_TRUE(refused.message.starts_with("the factorisation needs ")) << refused.message;
 }
 
 TEST(MemoryCountTest, MessageNamesNeedAndLimitInTheirUnits) {

@@ -1,5 +1,5 @@
-// Parts in a tree: what stands between them stands there at every level, and the kernel on it solves like any other, on
-// any number of threads, whatever order the tasks come in.
+// Parts in a tree: what stands between them stands there at every level, and the kernel on it solves like any
+// other, on any number of threads, whatever order the tasks come in.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,37 +9,11 @@
 #include "solver/registry.h"
 #include "solver/separators.h"
 #include "solver/worker_team.h"
+#include "tests/solver/part_trees.h"
 #include "tests/solver/problem_makers.h"
 
 namespace cleave {
 namespace {
-
-struct Tree {
-  std::vector<int> part_of_body, parent_of_part;
-  Parts parts() const { return {part_of_body, parent_of_part}; }
-};
-
-// Slices of bodies, joined in pairs until one node is left.
-Tree sliced_tree(int bodies, int leaves) {
-  Tree tree{sliced_parts(bodies, leaves), std::vector<int>(leaves, -1)};
-  std::vector<int> level(leaves);
-  for (int i = 0; i < leaves; ++i) level[i] = i;
-  while (level.size() > 1) {
-    std::vector<int> up;
-    for (std::size_t i = 0; i < level.size(); i += 2) {
-      if (i + 1 == level.size()) {
-        up.push_back(level[i]);
-        continue;
-      }
-      const int node = static_cast<int>(tree.parent_of_part.size());
-      tree.parent_of_part[level[i]] = tree.parent_of_part[level[i + 1]] = node;
-      tree.parent_of_part.push_back(-1);
-      up.push_back(node);
-    }
-    level = up;
-  }
-  return tree;
-}
 
 StepProblem pile(double cfm = 1e-5, int columns = 10) {
   PileOptions options;
@@ -59,7 +33,7 @@ TEST(SeparatorsTest, StandBetweenAllThatIsCut) {
   PreparedStep step;
   step.prepare(problem);
   for (const int leaves : {1, 2, 3, 7, 16}) {
-    const Tree tree = sliced_tree(problem.body_count(), leaves);
+    const PartTree tree = sliced_tree(problem.body_count(), leaves);
     Separators separators;
     separators.find(step, tree.parts());
     EXPECT_EQ(separators.part_count(), leaves);
@@ -90,7 +64,7 @@ TEST(SchurNestedTest, AgreesWithTheWholeSystemOnAnyTree) {
     const StepProblem problem = pile(cfm);
     const Solution whole = solved("exact", problem, {});
     for (const int leaves : {1, 2, 5, 16}) {
-      const Tree tree = sliced_tree(problem.body_count(), leaves);
+      const PartTree tree = sliced_tree(problem.body_count(), leaves);
       for (const char* solver : {"pivot:schur-nested", "interior-point:schur-nested"}) {
         const Solution nested = solved(solver, problem, tree.parts());
         for (std::size_t c = 0; c < whole.velocity.size(); ++c)
@@ -112,7 +86,7 @@ TEST(SchurNestedTest, OneLevelIsSchurBodies) {
 
 TEST(KernelsTest, GiveTheSameBytesOnAnyNumberOfThreadsInAnyOrder) {
   const StepProblem problem = pile(1e-5, 6);
-  const Tree tree = sliced_tree(problem.body_count(), 9);
+  const PartTree tree = sliced_tree(problem.body_count(), 9);
   for (const char* solver :
        {"exact", "schur", "interior-point:schur-rows", "pivot:schur-bodies", "interior-point:schur-nested"}) {
     const Solution one = solved(solver, problem, tree.parts());

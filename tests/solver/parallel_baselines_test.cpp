@@ -129,8 +129,8 @@ TEST(ApgdTest, EndsWhereTheTargetIsMet) {
   EXPECT_LE(judge(problem, found.solution.impulse).residual_m_per_s, 1e-10);
 }
 
-// Acceleration is what it is for: on a stack that takes plain descent long, far fewer iterations than the slowest of
-// Jacobi's kind need sweeps.
+// Acceleration is what it is for: on a stack that takes plain descent long, far fewer iterations than the
+// slowest of Jacobi's kind need sweeps.
 TEST(ApgdTest, IsFasterThanSweepsThatAreNotAccelerated) {
   const StepProblem problem = make_pile(6, {.columns = 1, .rows = 1, .layers = 12, .mu = 0});
   const auto residual = [&](const std::string& solver) {

@@ -108,8 +108,8 @@ TEST(VivaceColoringTest, IsValidAndRepeatsItself) {
     again.color_by_chance(bodies, groups, seed + 1);
     unlike += again.color_count() != coloring.color_count() ||
               (coloring.color_count() > 0 && !std::ranges::equal(again.groups_of(0), coloring.groups_of(0)));
-    // A palette is of no more colours than neighbours over kShrinking, and one for each time that all of it was taken: by as many
-    // neighbours.
+    // A palette is of no more colours than neighbours over kShrinking, and one for each time that all of it
+    // was taken: by as many neighbours.
     EXPECT_LE(coloring.color_count(), groups.empty() ? 0 : largest_degree(groups) + 1);
   }
   EXPECT_GT(unlike, 200);

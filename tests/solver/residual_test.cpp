@@ -87,8 +87,8 @@ TEST(ResidualTest, AgreesWithDenseRecomputation) {
   }
 }
 
-// Impulses in their range, at its ends and beyond, and slacks small and large beside what the row can be moved by: the judge
-// looks at the diagonal in some of these cases only.
+// Impulses in their range, at its ends and beyond, and slacks small and large beside what the row can be
+// moved by: the judge looks at the diagonal in some of these cases only.
 TEST(ResidualTest, EveryRowAgreesWithDenseRecomputation) {
   int rows_at_bounds = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {
@@ -134,7 +134,8 @@ TEST(ResidualTest, MassesOfAnyPatternAgreeWithDenseRecomputation) {
   }
 }
 
-// Of some rows: their residuals and the velocities of their bodies are those of the whole, and all others are left alone.
+// Of some rows: their residuals and the velocities of their bodies are those of the whole, and all others are
+// left alone.
 TEST(ResidualTest, OnlyWhatIsAskedForIsWritten) {
   int bodies_left_alone = 0;
   for (int seed = 0; seed < kSeeds; ++seed) {

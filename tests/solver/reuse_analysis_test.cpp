@@ -75,8 +75,8 @@ TEST_P(ReuseAnalysisTest, SolvesEverySubsetAndWhatLiesOutside) {
   }
 }
 
-// Nothing but the analysis is kept. The second problem has the rows and the compliance of the first and starts with its active
-// set, so that by its weights a factor of the first would fit.
+// Nothing but the analysis is kept. The second problem has the rows and the compliance of the first and
+// starts with its active set, so that by its weights a factor of the first would fit.
 TEST_P(ReuseAnalysisTest, GivesTheBytesOfAFreshSolverOnOtherNumbers) {
   const StepProblem first = make_pile(7, {.columns = 3, .rows = 3, .layers = 3});
   StepProblem second = first;

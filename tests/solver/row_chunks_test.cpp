@@ -1,4 +1,5 @@
-// Light work on rows is dealt out in chunks: all rows once, and the same bytes however many threads there are.
+// Light work on rows is dealt out in chunks: all rows once, and the same bytes however many threads there
+// are.
 #include <gtest/gtest.h>
 
 #include <cmath>

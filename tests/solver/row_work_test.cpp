@@ -1,5 +1,6 @@
-// What is handed to a kernel's passes over the rows is done there: on every row once, weights and right-hand sides before they are
-// read, and after increments are written; likewise where velocities follow from impulses. The answer has the bytes of one where all was done beforehand.
+// What is handed to a kernel's passes over the rows is done there: on every row once, weights and right-hand
+// sides before they are read, and after increments are written; likewise where velocities follow from
+// impulses. The answer has the bytes of one where all was done beforehand.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,8 +26,8 @@ namespace {
 
 constexpr double kUnwritten = std::numeric_limits<double>::quiet_NaN();
 
-// A kernel of the table, or "carried" or "wrongly carried" one: with a wrong factor conjugate gradients give up, and the system is
-// factored.
+// A kernel of the table, or "carried" or "wrongly carried" one: with a wrong factor conjugate gradients give
+// up, and the system is factored.
 std::unique_ptr<Kernel> kernel_named(const std::string& name) {
   const std::string own = name.substr(name.rfind(' ') + 1);
   if (own == name) return make_kernel(name);
@@ -110,7 +111,8 @@ INSTANTIATE_TEST_SUITE_P(Kernels, RowWorkTest, testing::ValuesIn(names()), [](co
   return name;
 });
 
-// With cones f_r is turned before the kernel sees it, and dlambda back after; what is done around that sees rows.
+// With cones f_r is turned before the kernel sees it, and dlambda back after; what is done around that sees
+// rows.
 TEST(RowWorkOfCones, SeesRowsAsTheyAre) {
   const StepProblem problem = make_cone_pile(5, 1e-5);
   PreparedStep step;
@@ -149,7 +151,8 @@ TEST(RowWorkOfCones, SeesRowsAsTheyAre) {
   EXPECT_EQ(seen, dlambda);
 }
 
-// Velocities from impulses that are written on the way, and slacks that are read where they come up: of rows, of turned boxes and of cones.
+// Velocities from impulses that are written on the way, and slacks that are read where they come up: of rows,
+// of turned boxes and of cones.
 TEST(RowWorkOfVelocities, IsDoneBeforeAndAfter) {
   const StepProblem pile = make_pile(5, {.columns = 4, .rows = 4, .layers = 4});
   for (const StepProblem& problem :

@@ -1,5 +1,5 @@
-// Solvers that carry their factor from step to step: exact on every step, whatever the factor was of, and it serves
-// where little has changed.
+// Solvers that carry their factor from step to step: exact on every step, whatever the factor was of, and it
+// serves where little has changed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "solver/carried_factor.h"
@@ -142,16 +143,61 @@ TEST_F(CarriedFactorTest, SolvesTheSystemOfTheStepAtHand) {
   EXPECT_LT(defect(step_, d_, f_v_, f_r_, dv_), 1e-5);
 }
 
+// That no factor is positive definite shows at once. One that is, of another matrix, leads to the answer too,
+// only slowly: it is made anew where so many iterations are above what a factorisation takes.
 TEST_F(CarriedFactorTest, IsMadeAnewWhereItIsWrong) {
-  for (const double planted : {-1.0, 0.0, std::numeric_limits<double>::infinity()}) {
-    const auto counts = solve_carried(std::make_unique<Dear>(planted), 1.5);
+  constexpr double kDear = 1e3, kOfFewIterations = 5;  // Mflop
+  for (const auto& [planted, mflop] : {std::pair(-1.0, kDear),
+                                       {0.0, kDear},
+                                       {std::numeric_limits<double>::infinity(), kDear},
+                                       {1.0, kOfFewIterations}}) {
+    const auto counts =
+        solve_carried(std::make_unique<Dear>(planted, make_monolithic_kernel(Settings()), mflop), 1.5);
     EXPECT_EQ(counts.factorizations, 1) << planted;
+    EXPECT_EQ(counts.cg_iterations > 0, planted == 1) << planted;
     EXPECT_LT(defect(step_, d_, f_v_, f_r_, dv_), 1e-9) << planted;
   }
 }
 
-// Pivots, and ends above the limit where it had a carried factor alone, as one would that is wrong in a way which conjugate
-// gradients do not tell.
+TEST_F(CarriedFactorTest, OfAnotherMatrixServesWhereTheOwnOneIsDear) {
+  const auto right = solve_carried(std::make_unique<Dear>(), 1.5);
+  const auto wrong = solve_carried(std::make_unique<Dear>(1.0), 1.5);
+  EXPECT_EQ(wrong.factorizations, 0);
+  EXPECT_GT(wrong.cg_iterations, 2 * right.cg_iterations);
+  EXPECT_LT(defect(step_, d_, f_v_, f_r_, dv_), 1e-5);
+}
+
+// A factor that is no positive definite one when it is to serve on, and cannot be made anew.
+class Unfactorable : public Dear {
+ public:
+  Unfactorable() : Dear(-1.0) {}
+  bool factor(const RowWeights& weights, ParallelTasks& tasks, const RowWork& before) override {
+    return factorizations_++ == 0 && Dear::factor(weights, tasks, before);
+  }
+
+ private:
+  int factorizations_ = 0;
+};
+
+// What is left of a factorisation that failed hangs on which of its tasks ran: nothing is made of it.
+TEST_F(CarriedFactorTest, LeavesNoIncrementWhereItCannotBeMadeAnew) {
+  CarriedFactor carried(std::make_unique<Unfactorable>());
+  const std::vector<int> parts = single_part(problem_.body_count());
+  carried.begin_step(0);
+  carried.analyze(step_, parts, tasks_);
+  EXPECT_TRUE(carried.factor(d_, tasks_));
+  carried.begin_step(0);
+  EXPECT_TRUE(carried.rebind(step_, parts, tasks_));
+  EXPECT_TRUE(carried.factor(d_, tasks_));
+  for (int solve = 0; solve < 2; ++solve) {
+    carried.solve(f_v_, f_r_, dv_, dlambda_, tasks_);
+    EXPECT_EQ(dv_, std::vector<double>(dv_.size(), 0.0));
+    EXPECT_EQ(carried.counts().cg_iterations, 0);
+  }
+}
+
+// Pivots, and ends above the limit where it had a carried factor alone, as one would that is wrong in a way
+// which conjugate gradients do not tell.
 class SpoiltByCarriedFactor : public Strategy {
  public:
   explicit SpoiltByCarriedFactor(int& spoilt) : spoilt_(spoilt) {}
@@ -204,7 +250,8 @@ class FactorsLate : public Strategy {
   int steps_ = 0;
 };
 
-// Pairs of bodies of the second step have no place in the first one's pattern, so that the third one is analysed.
+// Pairs of bodies of the second step have no place in the first one's pattern, so that the third one is
+// analysed.
 TEST(SessionPartsTest, AreThoseOfTheStepAtHand) {
   const StepProblem first = make_chain(3, {.links = 60}),
                     later = make_chain(4, {.links = 60, .extra_joints = 20});

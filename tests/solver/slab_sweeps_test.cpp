@@ -1,5 +1,5 @@
-// Sweeps in slabs: every group once, nothing side by side that shares a body, and the same numbers as a slow sweep in
-// the same order, for any number of threads.
+// Sweeps in slabs: every group once, nothing side by side that shares a body, and the same numbers as a slow
+// sweep in the same order, for any number of threads.
 #include "solver/slab_sweeps.h"
 
 #include <gtest/gtest.h>

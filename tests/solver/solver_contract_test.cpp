@@ -21,7 +21,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class SolverContractTest : public testing::TestWithParam<std::string> {
  protected:
-  // With a value for a parameter, where the solver has it; with sweeps enough to solve some of the small problems.
+  // With a value for a parameter, where the solver has it; with sweeps enough to solve some of the small
+  // problems.
   static std::unique_ptr<StepSolver> make(const SolveOptions& options = {}, const std::string& parameter = "",
                                           const std::string& value = "") {
     const std::string sweeps = has("sweeps") ? "@sweeps=50" : "";
@@ -279,8 +280,10 @@ TEST_P(SolverContractTest, NanInTheProblemIsAStatus) {
 
 TEST_P(SolverContractTest, StageTimesAddUp) {
   const StepProblem problem = make_pile(13, {.columns = 3, .rows = 2, .layers = 3, .mu = 0});
+  SolveOptions options;
+  options.models_workers = true;
   Solution solution = cold_start(problem);
-  const SolveSummary summary = solve(problem, sliced_parts(problem.body_count(), 4), solution);
+  const SolveSummary summary = solve(problem, sliced_parts(problem.body_count(), 4), solution, options);
   const StageTimes& times = summary.times;
   double named_ms = 0;
   for (const double stage_ms : times.stage_ms) {
@@ -314,14 +317,17 @@ TEST_P(SolverContractTest, MaxIterationsIsAnEnd) {
   EXPECT_GT(solve(problem, parts, patient).iterations, summary.iterations);
 }
 
-TEST_P(SolverContractTest, OnlyOneThreadIsModelled) {
+TEST_P(SolverContractTest, OneThreadAloneIsModelledAndWhereItIsAsked) {
   const StepProblem problem = make_pile(13, {.columns = 3, .rows = 2, .layers = 3, .mu = 0});
-  SolveOptions options;
-  options.threads = 2;
-  Solution solution = cold_start(problem);
-  const SolveSummary summary = solve(problem, sliced_parts(problem.body_count(), 4), solution, options);
-  EXPECT_GT(summary.times.total_ms, 0);
-  for (const double model_ms : summary.times.model_ms) EXPECT_TRUE(std::isnan(model_ms));
+  SolveOptions of_two;
+  of_two.threads = 2;
+  of_two.models_workers = true;
+  for (const SolveOptions& options : {of_two, SolveOptions()}) {
+    Solution solution = cold_start(problem);
+    const SolveSummary summary = solve(problem, sliced_parts(problem.body_count(), 4), solution, options);
+    EXPECT_GT(summary.times.total_ms, 0);
+    for (const double model_ms : summary.times.model_ms) EXPECT_TRUE(std::isnan(model_ms));
+  }
 }
 
 TEST_P(SolverContractTest, SaysWhatRan) {
@@ -355,7 +361,8 @@ std::string reason_of(const StepProblem& problem) {
   return make_step_solver("exact", SolveOptions{})->solve(problem, part_of_body, solution).message;
 }
 
-// Impulses of 1e12 N s have last digits of 1e-4 N s; where nothing can be right, digits are not what is wrong.
+// Impulses of 1e12 N s have last digits of 1e-4 N s; where nothing can be right, digits are not what is
+// wrong.
 TEST(StatusReason, NamesRoundingWhereItMayBeAllThatIsLeft) {
   EXPECT_EQ(reason_of(make_wedge(1e-4)), "");
   EXPECT_NE(reason_of(make_wedge(1e-12)).find("rounding of its impulses"), std::string::npos)

@@ -1,4 +1,5 @@
-// Sweeps on copies of bodies: what a copy is, that one domain is Gauss-Seidel, and that no sweep raises the energy.
+// Sweeps on copies of bodies: what a copy is, that one domain is Gauss-Seidel, and that no sweep raises the
+// energy.
 #include "solver/split_sweep.h"
 
 #include <gtest/gtest.h>
@@ -91,7 +92,8 @@ TEST(SplitSweepTest, NoSweepRaisesTheEnergyAndVelocitiesFollowTheImpulses) {
   }
 }
 
-// Two rows that hold one body up, alike: each domain moves its half of the mass by what the whole body asks for.
+// Two rows that hold one body up, alike: each domain moves its half of the mass by what the whole body asks
+// for.
 TEST(SplitSweepTest, TwoRowsAlikeShareWhatOneWouldDo) {
   StepProblem problem;
   problem.h_s = kTestStep_s;

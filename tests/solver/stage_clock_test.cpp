@@ -81,7 +81,8 @@ TEST(StageClockTest, ModelsParallelStagesAndKeepsSerialTime) {
   EXPECT_NEAR(times.total_ms - times.critical_path_ms, 12 - 5, 1e-9);
 }
 
-// On two workers 3 ms become 1.5, and every task costs 0.3 - 0.1 ms more, every stage 0.25; a single task is the caller's.
+// On two workers 3 ms become 1.5, and every task costs 0.3 - 0.1 ms more, every stage 0.25; a single task is
+// the caller's.
 TEST(StageClockTest, ChargesDispatchOnMoreThanOneWorker) {
   StageClock clock(1, {.timing_us = 100, .task_us = 300, .graph_task_us = 1100, .stage_us = 250});
   TaskGraph chain;

@@ -1,5 +1,5 @@
-// A solve that its caller ends: at the next iteration, out of every solver, which then solves as if nothing had
-// been.
+// A solve that its caller ends: at the next iteration, out of every solver, which then solves as if nothing
+// had been.
 #include "harness/base/stop.h"
 
 #include <gtest/gtest.h>

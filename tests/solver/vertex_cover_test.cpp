@@ -1,4 +1,5 @@
-// Covers of small graphs against every choice of nodes, and of graphs whose paths are as long as they are large.
+// Covers of small graphs against every choice of nodes, and of graphs whose paths are as long as they are
+// large.
 #include "solver/vertex_cover.h"
 
 #include <gtest/gtest.h>
@@ -28,8 +29,8 @@ int least_cover(int nodes, const Edges& edges) {
   return least;
 }
 
-// The cover that alternating paths give for one maximum matching is that of every other: a left node is out of it where
-// some maximum matching leaves it alone, which is where the least cover without it is no smaller.
+// The cover that alternating paths give for one maximum matching is that of every other: a left node is out
+// of it where some maximum matching leaves it alone, which is where the least cover without it is no smaller.
 std::vector<char> koenig_cover(int nodes, int left_nodes, const Edges& edges) {
   const auto least_without = [&](int node) {
     Edges rest;
@@ -48,8 +49,8 @@ TEST(VertexCover, IsTheLeastOneBetweenTwoSides) {
   for (int seed = 1; seed <= 60; ++seed) {
     SeededRandom random(seed);
     constexpr int kLeft = 5, kNodes = 10;
-    // Every edge from the left to the right, and each left node to the first right one: connected, and node 0, which the
-    // search colours first, is on the left.
+    // Every edge from the left to the right, and each left node to the first right one: connected, and node
+    // 0, which the search colours first, is on the left.
     Edges edges;
     for (int left = 0; left < kLeft; ++left) {
       edges.emplace_back(left, kLeft);
@@ -86,7 +87,8 @@ TEST(VertexCover, IsGreedyWhereThereAreOddRings) {
   }
 }
 
-// Many components, each of which is only to cost its own nodes; most edges uncovered first, lowest index on ties.
+// Many components, each of which is only to cost its own nodes; most edges uncovered first, lowest index on
+// ties.
 TEST(VertexCover, OfManyTrianglesTakesTheLowerTwoOfEach) {
   constexpr int kTriangles = 100000;
   Edges edges;
@@ -96,7 +98,8 @@ TEST(VertexCover, OfManyTrianglesTakesTheLowerTwoOfEach) {
   for (int node = 0; node < 3 * kTriangles; ++node) ASSERT_EQ(cover[node] != 0, node % 3 != 2) << node;
 }
 
-// One free node, from which alternating paths run through all others: nothing may lie on the stack for every node.
+// One free node, from which alternating paths run through all others: nothing may lie on the stack for every
+// node.
 TEST(VertexCover, FollowsPathsOfAnyLength) {
   constexpr int kNodes = 1000001;
   Edges edges;

@@ -1,4 +1,5 @@
-// What warm impulses change: which strategy `auto` picks on stiff steps, and whether `pivot` sweeps at all. Never the answer.
+// What warm impulses change: which strategy `auto` picks on stiff steps, and whether `pivot` sweeps at all.
+// Never the answer.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -98,8 +98,8 @@ TEST_P(WeightBlocksTest, TurnedBoxesAgreeWithTheSameRowsTurned) {
   }
 }
 
-// Blocks of one to three rows with any basis, rows outside of them scalar; every third block is singular. Half of them come after
-// the others.
+// Blocks of one to three rows with any basis, rows outside of them scalar; every third block is singular.
+// Half of them come after the others.
 void add_blocks(const StepProblem& problem, SeededRandom& random, LinearSystem& system) {
   for (const int r : contacts_of(problem)) {
     WeightBlock block{r + random.integer(0, 1), random.integer(1, 3), {}};

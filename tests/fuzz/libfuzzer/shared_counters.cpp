@@ -1,5 +1,5 @@
-// A problem file is read in a child process: its coverage counters are made memory that parent and child share, so
-// that the fuzzer, which looks at the parent's, sees what the child reached.
+// A problem file is read in a child process: its coverage counters are made memory that parent and child
+// share, so that the fuzzer, which looks at the parent's, sees what the child reached.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -11,8 +11,8 @@
 // The counters' section, as the linker names its ends.
 extern "C" std::uint8_t __start___sancov_cntrs[], __stop___sancov_cntrs[];
 
-// A crash in a child is told by its report, not by its signal, which says nothing about whose fault it was. Its frames
-// name their module also where they have names of functions (child_reports.cpp).
+// A crash in a child is told by its report, not by its signal, which says nothing about whose fault it was.
+// Its frames name their module also where they have names of functions (child_reports.cpp).
 extern "C" const char* __asan_default_options() {
   return "handle_segv=2:handle_sigbus=2:handle_sigfpe=2:handle_sigill=2:"
          "stack_trace_format='    #%n %p (%m+%o) %F %L'";

@@ -1,4 +1,5 @@
-// Loaded before a program (LD_PRELOAD): its wall clock is up to ten days wrong, in every process and at every question otherwise.
+// Loaded before a program (LD_PRELOAD): its wall clock is up to ten days wrong, in every process and at every
+// question otherwise.
 #include <sys/syscall.h>
 #include <sys/time.h>
 #include <unistd.h>
