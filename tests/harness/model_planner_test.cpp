@@ -3,12 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <iterator>
-#include <map>
 #include <memory>
 #include <random>
 #include <set>
@@ -18,11 +15,10 @@
 #include "harness/experiment/chosen_kernel.h"
 #include "harness/experiment/friction_cone.h"
 #include "harness/experiment/model_planner.h"
-#include "harness/experiment/options.h"
 #include "harness/experiment/problem_graph.h"
 #include "scenarios/scene.h"
 #include "solver/registry.h"
-#include "tests/harness/random_world.h"
+#include "tests/harness/planned_scene.h"
 #include "tests/harness/run_program.h"
 #include "tests/harness/world_stepper.h"
 
@@ -30,11 +26,6 @@ namespace cleave {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct PlannedScene {
-  std::map<std::string, std::string> options;
-  int steps;
-};
 
 // The fall, the impact, at rest, hit by the ball.
 const std::vector<PlannedScene> kScenes = {
@@ -58,17 +49,6 @@ const std::vector<PlannedScene> kScenes = {
     {{{"scene", "file@path=" + (fs::path(CLEAVE_SOURCE_DIR) / "scenarios/files/pile.toml").string()}}, 60},
 };
 
-WorldStepper stepper_of(const PlannedScene& scene) {
-  std::map<std::string, std::string> given = scene.options;
-  given["out"] = "none";
-  const RunOptions options = parse_run_options(given);
-  return {std::make_unique<OdeWorld>(scene_row(options.scene), options.scene.settings, options.seed,
-                                     options.gravity_m_per_s2),
-          options.extract};
-}
-
-std::vector<int> one_part(const StepProblem& problem) { return std::vector<int>(problem.body_count(), 0); }
-
 struct Solved {
   Solution solution;
   ModelCounts counts;
@@ -84,20 +64,13 @@ Solved solve_with(const StepProblem& problem, const std::vector<RowPlan>& plan) 
   return solved;
 }
 
-double difference(const std::vector<double>& a, const std::vector<double>& b) {
-  EXPECT_EQ(a.size(), b.size());
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
-  return most;
-}
-
 void expect_full_answer(const StepProblem& problem, const Solved& solved) {
   EXPECT_EQ(solved.summary.status, SolveStatus::ok) << solved.summary.message;
   const ResidualReport report = judge(problem, solved.solution.impulse);
   EXPECT_TRUE(report.exact) << report.residual_m_per_s;
   const Solved full = solve_with(problem, std::vector<RowPlan>(problem.rhs.size(), RowPlan::solved));
   EXPECT_EQ(full.counts.passes, 1);
-  EXPECT_LE(difference(solved.solution.velocity, full.solution.velocity), 1e-9);
+  EXPECT_LE(largest_difference(solved.solution.velocity, full.solution.velocity), 1e-9);
 }
 
 struct PlannedRows {
@@ -143,13 +116,8 @@ PlannedRows move_random_worlds(int steps, const Plan& plan) {
   const TemporaryDirectory directory;
   PlannedRows rows;
   for (int seed = 1; seed <= 30 && !testing::Test::HasFailure(); ++seed) {
-    const fs::path path = directory / "world.toml";
-    std::ofstream(path) << random_world(seed);
-    const PlannedScene scene{{{"scene", "file@path=" + path.string()},
-                              {"cfm", seed % 2 == 0 ? "1e-5" : "1e-8"},
-                              {"mu", seed % 3 == 0 ? "0" : "0.5"}},
-                             steps};
-    const PlannedRows found = expect_to_move_as_with_all_rows(scene, "seed " + std::to_string(seed), plan);
+    const PlannedRows found = expect_to_move_as_with_all_rows(random_scene(seed, steps, directory),
+                                                              "seed " + std::to_string(seed), plan);
     rows.left_out += found.left_out;
     rows.returned += found.returned;
     rows.all += found.all;

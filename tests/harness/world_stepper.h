@@ -74,6 +74,7 @@ class WorldStepper {
 
   BodyState state(int body) const { return world_->state(body); }
   const StepProblem& problem() const { return problem_; }
+  const std::vector<double>& impulse() const { return solution_.impulse; }
   int inexact_steps() const { return inexact_steps_; }
   int unconverged_bounds() const { return unconverged_bounds_; }
 
