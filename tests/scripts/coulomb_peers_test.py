@@ -24,6 +24,8 @@ def answer(words, given):
     if words[0] == "siconos-error":
         print("file,solver,rows,residual_m_per_s,siconos_error,velocity_difference_m_per_s")
         for solver, error in ERRORS.items():
+            if solver == os.environ.get("STAND_IN_NOT_STORED"):
+                continue
             if not (solver == THEIRS[1] and "step000200" in words[1] and "silo" in words[1]):
                 print(f"{words[1]},{solver},12,{error},{error},{error}")
         return 0
@@ -105,6 +107,16 @@ class CoulombPeersTest(StandInCase):
         told = friction.coulomb_peers(Stored(self.directory / "out"))
         self.assertIn("Some CPU, 2 cores", told)
         self.assertIn("| silo | 1e-5 | 4 to 4 | 3 of 3 |", told)
+        told = friction.coulomb_beyond(Stored(self.directory / "out"))
+        self.assertIn("18 of 18 rows, a row a problem and solver of Siconos (`scripts/coulomb_peers`; Some CPU, 2 cores", told)
+        self.assertIn("Left out are `crane` and `mixed_site`: their motors are refused.", told)
+        self.assertIn("| silo | 200 | 1e-9 | 0.8 | siconos-newton | not solved by them | ", told)
+
+    def test_a_step_of_which_we_stored_no_solution_is_a_row(self):
+        with unittest.mock.patch.dict(os.environ, STAND_IN_NOT_STORED="exact"):
+            self.run_it("--scene", "chain_drop")
+        self.assertEqual({(row["siconos_error"], row["velocity_difference_m_per_s"]) for row in self.rows()}, {("nan", "nan")})
+        self.assertEqual({row["peer_siconos_error"] for row in self.rows()}, {"1e-06", "1e-11"})
 
     def test_a_bad_option_or_a_program_that_is_not_there_is_one_line(self):
         self.check_refused((("--scene", "crane"), "--scene has 'crane'"))

@@ -2,13 +2,16 @@
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import tempfile
 import unittest
+import unittest.mock
 
 from synthetic import ROOT, SCRIPTS
 
 from cleave_scripts.measurements import fuzzing
+from cleave_scripts.results.errors import ResultError
 
 # Prints what libFuzzer prints, and what FAKE says: a finding, a failure of its own, or nothing.
 PROGRAM = """#!/usr/bin/python3
@@ -25,6 +28,15 @@ if fake == "commit":
 print("stat::number_of_executed_units: 1234")
 sys.exit({"": 0, "finding " + name: 77, "failure " + name: 1}.get(fake, 0))
 """
+# In place of scripts/setup: PROGRAM under the names of all targets.
+SETUP = f"""#!/usr/bin/python3
+import pathlib
+folder = pathlib.Path(__file__).parents[1] / "build" / "fuzz" / "tests" / "fuzz"
+folder.mkdir(parents=True)
+for name in {fuzzing.TARGETS}:
+    (folder / ("fuzz_" + name)).write_text({PROGRAM!r})
+    (folder / ("fuzz_" + name)).chmod(0o755)
+"""
 
 
 class FuzzTest(unittest.TestCase):
@@ -39,9 +51,9 @@ class FuzzTest(unittest.TestCase):
             program.write_text(PROGRAM)
             program.chmod(0o755)
 
-    def fuzz(self, *arguments, fake="", programs=None, **more):
+    def fuzz(self, *arguments, fake="", programs=None, scripts=SCRIPTS, **more):
         environment = {**os.environ, "CLEAVE_FUZZ_PROGRAMS": str(programs or self.directory), "FAKE": fake, **more}
-        return subprocess.run([SCRIPTS / "fuzz", "--out", self.out, *arguments], capture_output=True, text=True,
+        return subprocess.run([scripts / "fuzz", "--out", self.out, *arguments], capture_output=True, text=True,
                               timeout=60, check=False, env=environment)
 
     def row(self, result, name):
@@ -75,7 +87,16 @@ class FuzzTest(unittest.TestCase):
         self.assertEqual([self.row(result, name)[-4:] for name in ("csv", "scene")], [" 0 |", " 1 |"])
         self.assertIn("0 findings.", self.fuzz("--target", "scene").stdout)
 
+    def test_of_programs_that_are_given_nobody_knows_the_commit(self):
+        result = self.fuzz()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        for name in fuzzing.TARGETS:
+            self.assertIn("| unknown |", self.row(result, name))
+
     def test_the_page_names_the_commit_from_before_the_run(self):
+        scripts = self.directory / "scripts"
+        shutil.copytree(SCRIPTS, scripts, ignore=shutil.ignore_patterns("__pycache__", "node_modules"))
+        (scripts / "setup").write_text(SETUP)
         repository = {"GIT_DIR": str(self.directory / ".git"), "GIT_WORK_TREE": str(self.directory)}
         repository |= {f"GIT_{who}_{what}": "x" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
 
@@ -86,12 +107,41 @@ class FuzzTest(unittest.TestCase):
         git("init")
         git("commit", "--allow-empty", "--message=first")
         (self.directory / ".git" / "info" / "exclude").write_text("*")
-        result = self.fuzz(fake="commit", **repository)
+        result = self.fuzz(fake="commit", scripts=scripts, CLEAVE_FUZZ_PROGRAMS="", **repository)
         self.assertEqual(result.returncode, 0, result.stderr)
         first = git("rev-list", "--max-parents=0", "HEAD").strip()
         self.assertNotEqual(first, git("rev-parse", "HEAD").strip())
         for name in fuzzing.TARGETS:
             self.assertIn(f"| {first[:10]} |", self.row(result, name))
+
+    def minimise(self, copy=fuzzing.write_bytes):
+        """Names and contents of a corpus that was made as small as `new` and `both`."""
+        corpus = self.directory / "tests" / "corpus" / "csv"
+        corpus.mkdir(parents=True, exist_ok=True)
+        for name in ("old", "both", "finding-1"):
+            (corpus / name).write_text(name)
+
+        def merge(words, _):
+            for name in ("both", "new"):
+                (words[-3] / name).write_text(name)
+            return 0
+
+        with unittest.mock.patch.multiple(fuzzing, SOURCES=self.directory / "tests", run=merge, write_bytes=copy):
+            try:
+                fuzzing.minimise(self.directory, "csv", self.out)
+            finally:
+                self.corpus = {file.name: file.read_text() for file in corpus.iterdir()}
+
+    def test_the_corpus_is_made_smaller_when_all_that_is_new_is_there(self):
+
+        def full_disk(*_):
+            raise ResultError("No space left on device")
+
+        with self.assertRaises(ResultError):
+            self.minimise(full_disk)
+        self.assertLessEqual({"old", "both", "finding-1"}, set(self.corpus))
+        self.minimise()
+        self.assertEqual(self.corpus, {name: name for name in ("both", "new", "finding-1")})
 
     def test_a_program_that_fails_by_itself_is_no_finding(self):
         result = self.fuzz(fake="failure fuzz_manifest")

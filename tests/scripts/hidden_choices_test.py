@@ -1,18 +1,24 @@
 """scripts/hidden_choices: claims and fits of made-up cells, and the command with a stand-in for the program."""
 import csv
 import itertools
+import os
 import pathlib
 import types
 import unittest
+import unittest.mock
 
 import pandas
+import stored_data
 from stand_in import NOTES_ITS_CALL, StandInCase
 from synthetic import good_row, write_manifest, write_steps
 
+from cleave_scripts.documents import hidden
+from cleave_scripts.documents.stored import Stored
 from cleave_scripts.figures import hidden_claims
 from cleave_scripts.figures.tree import read_tree
 from cleave_scripts.measurements import hidden_choices
 from cleave_scripts.measurements.hidden_choices import BFS, CUT, MIX, MR, TIME, Setting, Settings
+from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.paper import REFINERS, SCENES, load_paper_table1
 
 PAPER = load_paper_table1()
@@ -124,7 +130,9 @@ def write_campaign(directory):
     cells = campaign((25,), ("scene",))
     for number, rows in enumerate([*cells, [dict(row, interface_rows=10**6) for row in cells[0]]], 1):
         cell = pathlib.Path(directory) / "cells" / f"cell{number}"
-        write_steps(cell, rows)
+        path = write_steps(cell, rows)
+        if number == 1:
+            path.write_text(path.read_text() + os.environ.get("STAND_IN_TORN", ""))
         write_manifest(cell, options={})
         index.append(f"cell{number},{number if number <= len(cells) else 0},1,ok,-,-,--scene=x,-")
     (pathlib.Path(directory) / "index.csv").write_text("\n".join(index) + "\n")
@@ -152,6 +160,21 @@ class CommandTest(StandInCase):
         rows = campaign((25,), ("scene",))[0]
         write_steps(self.directory / "report" / "run", rows)
         self.assertEqual(read_tree(self.directory / "report").claims["holds"].dtype.kind, "i")
+
+    def test_what_is_wrong_with_a_cell_is_told(self):
+        with unittest.mock.patch.dict(os.environ, STAND_IN_TORN="1,2"):
+            said = self.run_it().stderr
+        self.assertIn("cells/cell1/steps.csv: the last line was not finished and is left out\n", said)
+
+    def test_the_document_tells_the_best_setting_and_what_is_missing_of_it(self):
+        self.run_it()
+        out = self.directory / "out"
+        stored_data.write_provenance(out, "hidden_choices.csv")
+        self.assertIn("Setting: n_max `25`, bodies numbered `scene`, bfs `bfs`", hidden.best_table(Stored(out)))
+        lines = (out / "hidden_choices.csv").read_text().splitlines(keepends=True)
+        (out / "hidden_choices.csv").write_text("".join(line for line in lines if not line.startswith("rock_pile,")))
+        with self.assertRaisesRegex(ResultError, "hidden_choices.csv has no row of rock_pile, none, schur, 25, scene, mindp, 5; scripts/hidden_choices"):
+            hidden.best_table(Stored(out))
 
 
 if __name__ == "__main__":

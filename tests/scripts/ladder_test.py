@@ -1,12 +1,15 @@
 """scripts/ladder with a stand-in for the program, and its closed forms."""
+import contextlib
 import csv
+import io
 import math
 import os
 import pathlib
+import runpy
 import tempfile
 import unittest
 
-from synthetic import PROGRAM, ROOT, run_script
+from synthetic import PROGRAM, ROOT, SCRIPTS, run_script
 
 from cleave_scripts.ladder import rungs
 from cleave_scripts.ladder.climbers import CLIMBERS, climber_of
@@ -185,6 +188,12 @@ class LadderTest(unittest.TestCase):
         self.ladder("--solver", "exact,exact_cone,pgs_20")
         self.assertEqual(sorted({tuple(call.split()[call.split().index(name) + 1] for name in ("--solver", "--friction")) for call in self.calls()}),
                          [("exact", "box"), ("exact", "cone"), ("pgs@sweeps=20", "box")])
+
+    def test_the_summary_tells_values_as_they_are_written(self):
+        row = {"rung": "time_step", "parameter": "dt", "solver": "exact", "first_failing": repr(1 / 60), "first_failing_physics": "-"}
+        with contextlib.redirect_stdout(io.StringIO()) as told:
+            runpy.run_path(str(SCRIPTS / "ladder"))["print_summary"]([row])
+        self.assertEqual(told.getvalue().splitlines()[1], "time_step (dt)       0.016666666666666666 / -")
 
     def test_bad_input_is_one_line_and_leaves_nothing(self):
         for arguments in (("--rung", "heavy"), ("--solver", "pgs"), ("--solver", "exact,pgs"), ("--steps", "0"), ("--timeout", "nan"),

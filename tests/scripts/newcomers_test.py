@@ -3,7 +3,7 @@ import pathlib
 import tempfile
 import unittest
 
-from report_data import manifest, rows_of, whole_system, write_claims, write_ladder, write_run, write_tradeoff
+from report_data import manifest, rows_of, whole_system, write_claims, write_ladder, write_motions, write_run, write_tradeoff
 from synthetic import matrix, run_script, write_manifest, write_steps
 
 from cleave_scripts.figures import data, looks, solver_groups, style, trade_off
@@ -88,6 +88,7 @@ class NewcomersTest(Scratch):
         write_newcomers(self.directory, ["log_tower", "rock_pile"])
         write_ladder(self.directory)
         write_tradeoff(self.directory)
+        write_motions(self.directory)
         write_claims(self.directory)
         for size in (50, 100):
             rows = rows_of("rock_pile", (PARTITIONERS[0], *NEWCOMERS), (REFINERS[0], REFINER), bodies=size, t_s_ms=size)

@@ -5,16 +5,16 @@ import tempfile
 import unittest
 
 import stored_data
-from synthetic import ROOT, SCRIPTS, run_script
+from synthetic import ROOT, SCRIPTS, run_script, write_manifest
 
-from cleave_scripts.documents import accuracy, campaigns, cuts, friction, hidden, large, markers, paper_claims, paper_table, sets, speed, stability, worth
+from cleave_scripts.documents import accuracy, campaigns, cuts, friction, hidden, large, markers, paper_claims, paper_table, peers, sets, speed, stability, worth
 from cleave_scripts.documents.stored import NoResults, Stored
-from cleave_scripts.measurements import coulomb_beside_siconos, extremes_steps, friction_cost, large_scenes, running_simulation
+from cleave_scripts.measurements import coulomb_beside_siconos, extremes_steps, friction_bounds, friction_cost, large_scenes, partition_worth, peer_times, running_simulation
 from cleave_scripts.measurements.reference_stages import STAGES
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.table import text
 
-DOCUMENTS = ("README.md", "partition/README.md", "solver/README.md", "harness/README.md", "results/README.md", "results/table1.md")
+DOCUMENTS = ("README.md", "partition/README.md", "solver/README.md", "harness/README.md", "harness/peers/README.md", "results/README.md", "results/table1.md")
 MEASURED = re.compile(r"\d ?(?:ms|µs|us|%|Gflop/s)\b|\d %")
 
 
@@ -26,7 +26,7 @@ class CheckoutTest(unittest.TestCase):
 
     def test_every_part_stands_in_a_document_and_every_document_has_one(self):
         found = [markers.names((ROOT / name).read_text()) for name in DOCUMENTS]
-        modules = (accuracy, campaigns, cuts, friction, hidden, large, paper_claims, paper_table, sets, speed, stability, worth)
+        modules = (accuracy, campaigns, cuts, friction, hidden, large, paper_claims, paper_table, peers, sets, speed, stability, worth)
         self.assertEqual(sorted(sum(found, [])), sorted(name for module in modules for name in module.BLOCKS))
         self.assertTrue(all(found))
 
@@ -40,10 +40,13 @@ class CheckoutTest(unittest.TestCase):
             @staticmethod
             def provenance():
                 return {"karger.csv": {"command": "scripts/karger --out out/karger --trials 3"},
+                        "report/verdicts.csv": {"command": "scripts/report out/report"},
                         "figures/a.png": {"command": "scripts/readme_figures --out out/figures out/report"}}
         self.assertEqual(sets.command_of(Known, "karger.csv"), "scripts/karger --trials 3")
         self.assertEqual(sets.command_of(Known, "figures"), "scripts/readme_figures out/report")
         self.assertEqual(sets.command_of(Known, "ablation.csv"), "scripts/ablation")
+        self.assertEqual(sets.command_of(Known, "report"), "scripts/report_runs --measure-every 25")
+        self.assertEqual(sets.command_of(Known, "report/verdicts.csv"), "scripts/report out/report")
 
     def test_every_file_of_the_set_is_explained(self):
         text = (ROOT / "results" / "README.md").read_text()
@@ -61,7 +64,8 @@ class CheckoutTest(unittest.TestCase):
         """{small CSV file: its columns} as the commands write them."""
         written = {"extremes.csv": set(extremes_steps.WRITTEN), "running_simulation.csv": set(running_simulation.COLUMNS),
                    "large_scenes.csv": set(large_scenes.COLUMNS), "friction_cost.csv": set(friction_cost.COLUMNS),
-                   "coulomb_peers.csv": set(coulomb_beside_siconos.COLUMNS)}
+                   "friction_bounds.csv": set(friction_bounds.COLUMNS),
+                   "coulomb_peers.csv": set(coulomb_beside_siconos.COLUMNS), "partition_worth.csv": set(partition_worth.COLUMNS), "peer_times.csv": set(peer_times.COLUMNS)}
         for command in ("two_threads", "modelled_workers", "busy_machine", "cold_starts", "karger", "partition_over_time", "ablation"):
             listed = re.search(r"^COLUMNS = \((.*?)\)", (SCRIPTS / command).read_text(), re.M | re.S)[1]
             written[f"{command}.csv"] = set(re.findall(r'"(\w+)"', listed))
@@ -132,6 +136,20 @@ class RewriteTest(unittest.TestCase):
         (self.root / "results" / "two_threads.csv").unlink()
         self.run_it()
         self.assertIn("results/two_threads.csv: not stored, scripts/two_threads makes it\n", self.run_it("--check", code=3))
+
+    def test_check_names_runs_that_are_not_whole_and_builds_with_local_changes(self):
+        run = self.root / "results" / "full" / "rock_pile"
+        write_manifest(run, state="interrupted", build=stored_data.BUILD, machine=stored_data.MACHINE)
+        path = run / "steps.csv"
+        path.write_text(path.read_text() + "1,2")
+        self.run_it()
+        self.assertIn("results/full/rock_pile/steps.csv: the last line was not finished and is left out; not all steps are there, the state of "
+                      "the run is interrupted\n", self.run_it("--check", code=3))
+        path.write_text(path.read_text().removesuffix("1,2"))
+        for dirty in ("true", "unknown"):
+            write_manifest(run, state="complete", build=stored_data.BUILD | {"git_dirty": dirty}, machine=stored_data.MACHINE)
+            self.run_it()
+            self.assertEqual(self.run_it("--check", code=3), "results/full: made by a build with local changes or without a commit\n")
 
     def test_bad_places_are_one_line(self):
         path = self.root / "README.md"
@@ -213,8 +231,9 @@ class BlocksTest(unittest.TestCase):
         self.assertIn("| rocks | cfm | `exact` | `pivot:schur-bodies` |\n| --- | --- | --- | --- |\n"
                       "| 200 | 1e-05 | - (1.60 of 1.60) | 1.00 (2.00 of 2.00) |\n"
                       "| 200 | 1e-10 | 0.75 (1.50 of 2.00) | 0.80 (1.50 of 1.88) |\n", made)
-        self.assertIn("the least of 3 combinations:\n\n| step 100 | step 300 |\n| --- | --- |\n"
-                      "| `mix+none` 0.90 (1.80 of 2.00) | `mix+none` 0.90 (1.80 of 2.00) |", made)
+        self.assertIn("| step | least share | below 0.8 | measured | combinations |\n| --- | --- | --- | --- | --- |\n"
+                      "| 100 | `mix+none` 0.90 (1.80 of 2.00) | 0 | 2 | 3 |\n| 300 | `mix+none` 0.90 (1.80 of 2.00) | 0 | 2 | 3 |", made)
+        self.assertNotIn("Solvers that iterate", made)
         self.assertIn("Medians of 3 rounds", made)
         self.assertIn("Some CPU, 2 cores, commit 0123456789", made)
 

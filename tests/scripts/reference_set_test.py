@@ -8,7 +8,7 @@ from synthetic import ROOT
 from cleave_scripts.measurements import fuzzing
 
 RESULTS = ROOT / "results"
-READ_FROM_RUNS = ("report/verdicts.csv", "figures/figure3.png", "figures/trade_off.png", "campaign_costs.csv")
+READ_FROM_RUNS = ("report/verdicts.csv", "figures/figure3.png", "campaign_costs.csv")
 
 
 def manifests():

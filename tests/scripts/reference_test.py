@@ -5,10 +5,13 @@ import pathlib
 import subprocess
 import tempfile
 import unittest
+import unittest.mock
 
-from synthetic import ROOT, run_script
+from synthetic import ROOT, SCRIPTS, run_script
 
+from cleave_scripts.measurements import reference_files
 from cleave_scripts.measurements.reference_stages import STAGES
+from cleave_scripts.results.errors import ResultError
 
 PROGRAM = f"""#!/usr/bin/python3
 import sys
@@ -18,13 +21,16 @@ stand_in_key.answer()
 """
 # Every script of a stage: notes its call, writes what the stage is to leave, ends as STAND_IN says of it.
 SCRIPT = f"""#!/usr/bin/python3
-import json, os, pathlib, sys
+import json, os, pathlib, sys, time
 sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
 from stand_in_sweep import write_index
 """ + """
 name, arguments = os.path.basename(sys.argv[0]), sys.argv[1:]
 with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write(" ".join([name, *arguments]) + "\\n")
+with open(os.environ["STAND_IN_LOG"] + "_programs", "a") as log:
+    log.write(" ".join(os.environ[f"CLEAVE_{which}"] for which in ("PROGRAM", "PEERS", "MUJOCO")) + "\\n")
+time.sleep(json.loads(os.environ.get("STAND_IN_SECONDS", "{}")).get(name, 0))
 code = json.loads(os.environ.get("STAND_IN", "{}")).get(name, 0)
 out = pathlib.Path(arguments[arguments.index("--out") + 1] if "--out" in arguments else arguments[0] if arguments else ".")
 LEFT = {
@@ -37,9 +43,10 @@ LEFT = {
     "running_simulation": ["running_simulation.csv"], "large_scenes": ["large_scenes.csv"],
     "model_savings": ["model_savings.csv"], "campaign_costs": ["campaign_costs.csv"],
     "friction_cost": ["friction_cost.csv"],
-    "friction_models": ["friction_motion.csv", "friction_velocities.csv"], "coulomb_peers": ["coulomb_peers.csv"],
+    "friction_models": ["friction_motion.csv", "friction_velocities.csv", "friction_bounds.csv"], "coulomb_peers": ["coulomb_peers.csv"], "peers": ["peer_times.csv"],
     "hidden_choices": ["hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv", "verdict_map.png"],
-    "tradeoff": ["tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "time_to_accuracy.png", "crossover.png", "accuracy_profile.png"],
+    "tradeoff": ["tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "price_of_accuracy.png", "time_to_accuracy.png", "crossover.png",
+                 "accuracy_profile.png", "tradeoff_motion.png"],
     "cold_starts": ["cold_starts.csv"], "ablation": ["ablation.csv"], "report": ["figures/verdicts.csv"],
     "readme_figures": ["figure2.png"],
 }
@@ -98,12 +105,12 @@ class ReferenceTest(unittest.TestCase):
         self.git("add", "-A")
         self.git("commit", "-q", "--allow-empty", "-m", "x")
 
-    def run_it(self, code=0, told="{}", **key):
+    def run_it(self, code=0, told="{}", variables=(), **key):
         """(what was called, what was said)"""
         self.log.write_text("")
         key = {"git_hash": self.git("rev-parse", "HEAD"), **key}
-        environment = dict(os.environ, CLEAVE_PROGRAM=str(self.directory / "cleave"), CLEAVE_PEERS=str(self.directory / "cleave"), STAND_IN_LOG=str(self.log),
-                           STAND_IN=told, STAND_IN_KEY=json.dumps(key))
+        environment = dict(os.environ, CLEAVE_PROGRAM=str(self.directory / "cleave"), CLEAVE_PEERS=str(self.directory / "cleave"), CLEAVE_MUJOCO=str(self.directory / "cleave"), STAND_IN_LOG=str(self.log),
+                           STAND_IN=told, STAND_IN_KEY=json.dumps(key)) | dict(variables)
         result = run_script("reference", "--root", self.root, env=environment)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return self.log.read_text().splitlines(), result.stderr
@@ -115,13 +122,13 @@ class ReferenceTest(unittest.TestCase):
     def test_all_is_made_in_order_and_replaces_what_was_there(self):
         calls, said = self.run_it()
         self.assertEqual([call.split()[0] for call in calls], [stage.command[0] for stage in STAGES] + ["readme_tables"])
-        self.assertIn("[1/29] matrix, about 25 min: scripts/reproduce --measure-every 10 --out out/reference/report", said)
+        self.assertIn(f"[1/{len(STAGES)}] matrix, about 25 min: scripts/reproduce --measure-every 10 --out out/reference/report", said)
         self.assertEqual(self.results(), {
             "README.md", "torture/torture.json", "provenance.json", "extremes.csv", "solver_benchmark.json",
             "partition_benchmark.json",
             "dense_benchmark.json", "busy_machine.csv",
             "two_threads.csv", "karger.csv", "partition_over_time.csv", "partition_worth.csv", "partition_worth.png", "partition_regret.csv", "tradeoff.csv", "tradeoff_partitions.csv",
-            "tradeoff_motion.csv", "time_to_accuracy.png", "crossover.png", "accuracy_profile.png", "model_savings.csv", "campaign_costs.csv", "friction_cost.csv", "friction_motion.csv", "friction_velocities.csv", "coulomb_peers.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
+            "tradeoff_motion.csv", "price_of_accuracy.png", "time_to_accuracy.png", "crossover.png", "accuracy_profile.png", "tradeoff_motion.png", "model_savings.csv", "campaign_costs.csv", "friction_cost.csv", "friction_motion.csv", "friction_velocities.csv", "friction_bounds.csv", "coulomb_peers.csv", "peer_times.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
             "verdict_map.png", "modelled_workers.csv", "running_simulation.csv", "large_scenes.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
             "report/verdicts.csv", *(f"report/{run}/{file}" for run in (
                 "scaling/bodies_50", *(f"{name}/rock_pile" for name in ("one_thread", "schur_bodies", "solvers", "every_step", "karger")))
@@ -134,7 +141,9 @@ class ReferenceTest(unittest.TestCase):
         self.run_it()
         before = self.results()
         for lost, told in (("tradeoff/crossover.png", "stage tradeoff: .* has no crossover.png; nothing is stored"),
-                           ("report/scaling/cells/bodies_50/steps.csv", "stage report_runs: .* has no steps.csv below scaling; nothing is stored")):
+                           ("report/scaling/cells/bodies_50/steps.csv", "stage report_runs: .* has no steps.csv of scaling/bodies_50; nothing is stored"),
+                           ("report/paper/cells/rock_pile/manifest.json", "stage matrix: .* has no manifest.json of paper/rock_pile; nothing is stored"),
+                           ("report/paper/index.csv", "stage matrix: .* has no paper/index.csv; nothing is stored")):
             self.git("checkout", "-q", "--", ".")
             self.git("clean", "-q", "-fd")
             path = self.root / "out/reference" / lost
@@ -147,6 +156,56 @@ class ReferenceTest(unittest.TestCase):
         self.git("checkout", "-q", "--", ".")
         self.run_it()
         self.assertEqual(self.results(), before)
+
+    def test_a_cell_that_crashed_has_nothing_to_lose(self):
+        self.run_it()
+        self.git("checkout", "-q", "--", ".")
+        self.git("clean", "-q", "-fd")
+        index = self.root / "out/reference/report/paper/index.csv"
+        lines = [line.replace(",ok,-,-,", f",crashed,no,{'0' * 64},") if line.startswith("rock_pile,") else line
+                 for line in index.read_text().splitlines(keepends=True)]
+        index.write_text("".join(lines))
+        (self.root / "out/reference/report/paper/cells/rock_pile/steps.csv").unlink()
+        self.run_it()
+        self.assertNotIn("full/rock_pile/steps.csv", self.results())
+
+    def test_older_results_stay_until_all_is_written(self):
+        self.run_it()
+        self.git("checkout", "-q", "--", ".")
+        self.git("clean", "-q", "-fd")
+        copy, records, left = reference_files._copy, {stage.name: {} for stage in STAGES}, [20]
+
+        def full_disk(*arguments):
+            left[0] -= 1
+            if left[0] < 0:
+                raise ResultError("No space left on device")
+            copy(*arguments)
+
+        with unittest.mock.patch.object(reference_files, "_copy", full_disk), self.assertRaises(ResultError):
+            reference_files.publish(self.root, records)
+        self.assertLess({"old/steps.csv", "full/rock_pile/steps.csv"}, self.results())
+        reference_files.publish(self.root, records)
+        self.assertNotIn("old/steps.csv", self.results())
+        self.assertIn("full/rock_pile/checksums", self.results())
+
+    def test_stages_use_the_programs_that_were_checked(self):
+        given = {f"CLEAVE_{which}": os.path.relpath(self.directory / "cleave") for which in ("PEERS", "MUJOCO")}
+        self.run_it(variables=given)
+        programs = set(pathlib.Path(f"{self.log}_programs").read_text().splitlines()[:len(STAGES)])
+        self.assertEqual(programs, {" ".join([str(self.directory / "cleave")] * 3)})
+
+    def test_what_a_stage_took_counts_earlier_starts_where_it_goes_on(self):
+        for name in ("extremes", "tradeoff"):
+            self.run_it(code=130, told=json.dumps({name: 130}), variables={"STAND_IN_SECONDS": json.dumps({name: 3})})
+        self.run_it()
+        notes = json.loads((self.root / "results/provenance.json").read_text())["files"]
+        self.assertGreaterEqual(notes["extremes.csv"]["seconds"], 3)
+        self.assertLess(notes["tradeoff.csv"]["seconds"], 3)
+
+    def test_stages_go_on_where_their_command_runs_a_campaign(self):
+        commands = {stage.command[0]: (SCRIPTS / stage.command[0]).read_text() for stage in STAGES}
+        self.assertEqual({stage.command[0] for stage in STAGES if stage.resumes},
+                         {name for name, source in commands.items() if "campaign.run(" in source or "run_sweep(" in source})
 
     def test_paths_in_manifests_are_relative_and_files_without_one_have_provenance(self):
         self.run_it()

@@ -9,7 +9,7 @@ from cleave_scripts.results.paper import PARTITIONERS, REFINERS, SCENES, load_pa
 
 PAPER = load_paper_table1()
 STEPS = range(9, 90, 10)
-OF_TRADEOFF = ("time_to_accuracy", "crossover", "accuracy_profile")  # figures of another script's table
+OF_TRADEOFF = ("price_of_accuracy", "time_to_accuracy", "crossover", "accuracy_profile", "tradeoff_motion")  # figures of another script's tables
 STAGES = ("analyze", "factor_local", "factor_interface")
 
 
@@ -116,6 +116,16 @@ def write_tree(directory):
                   sweeps=sweeps)
     write_ladder(directory)
     write_tradeoff(directory)
+    write_motions(directory)
+
+
+def write_motions(directory):
+    """A chain that two solvers have moved, one of them in two numbers of sweeps."""
+    lines = ["scene,mover,step,time_s,rows,iterations,residual_m_per_s,max_penetration_m,joint_drift_m,height_m,kinetic_energy_j,potential_energy_j,"
+             "t_s_ms,status,bodies"]
+    for mover, t_s_ms, drift_m in (("exact", 1, 1e-4), ('"pgs, 20 sweeps"', 0.5, 2e-3), ('"pgs, 100 sweeps"', 2.5, 3e-4)):
+        lines += [f"chain_drop,{mover},{step},1,900,9,1e-3,1e-4,{drift_m},1.5,0.1,{600 - 1e4 * drift_m},{t_s_ms},ok,100" for step in (9, 19)]
+    (directory / "tradeoff_motion.csv").write_text("\n".join(lines) + "\n")
 
 
 def write_tradeoff(directory):

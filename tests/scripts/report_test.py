@@ -11,6 +11,7 @@ from report_data import OF_TRADEOFF, PAPER, manifest, report_row, rows_of, whole
 from synthetic import run_script, write_manifest, write_steps
 
 from cleave_scripts.figures import data, kernel_value, looks, solver_groups, style, times_by_step, trade_off, tree
+from cleave_scripts.figures.choose import merged_runs
 from cleave_scripts.figures.registry import FIGURES
 from cleave_scripts.figures.tables import scene_tables
 from cleave_scripts.figures.tree import NoData
@@ -97,6 +98,22 @@ class WholeTreeTest(TreeTest):
         self.assertIn("\\toprule", (self.directory / "figures" / "table1.tex").read_text())
         self.assertIn("mix,fm", (self.directory / "figures" / "table1.csv").read_text())
         self.assertIn("| mix fm |", (self.directory / "figures" / "table1.md").read_text())
+
+    def test_table_1_has_the_medians_of_repeated_runs_as_the_figures_have(self):
+        for name, share, status in (("a", 1, "ok"), ("b", 9, "ok"), ("c", 2, "ok"), ("d", 100, "not_converged")):
+            rows = rows_of("rock_pile", steps=(9, 19), status=status)
+            for row in rows:
+                row.update(t_s_ms=share * row["t_s_ms"], t_pr_ms=share)
+            write_run(self.directory / name, rows)
+        loaded = data.load(self.directory, "schur")
+        table, = scene_tables(loaded)[0]
+        cell, = (cell for cell in table.cells if (cell.partitioner, cell.refiner) == ("mix", "fm"))
+        alone = [report_row("rock_pile", step, "mix", "fm")["t_s_ms"] for step in (9, 19)]
+        self.assertAlmostEqual(cell.ours.t_s_ms, 2 * sum(alone) / 2, 9)
+        self.assertEqual((cell.ours.t_pr_ms, cell.ok, cell.failed), (2, 2, 0))
+        drawn = merged_runs(loaded.main["rock_pile"])
+        drawn = drawn[(drawn["partitioner"] == "mix") & (drawn["refiner"] == "fm")]
+        self.assertEqual((len(drawn), drawn["t_s_ms"].mean()), (2, cell.ours.t_s_ms))
 
     def test_rendered_figures_and_film_strips_are_embedded(self):
         write_run(self.directory / "rock_pile", rows_of("rock_pile"))
@@ -301,12 +318,14 @@ class DamageTest(TreeTest):
         (self.directory / "bad_manifest" / "manifest.json").write_text("{")
         (self.directory / "ladder.csv").write_text("rung,value\n1,2\n")
         (self.directory / "tradeoff.csv").write_text("series,scene\npaper,rock_pile\n")
+        (self.directory / "tradeoff_motion.csv").write_text("scene\nrock_pile\n")
         page, said = self.report()
         for words in ("empty/steps.csv: empty file", "header/steps.csv: missing column partitioner",
                       "words/steps.csv: missing column scene", "binary/steps.csv: not a text file",
                       "no_rows/steps.csv: no rows", "half/steps.csv: the last line was not finished",
                       "the state of the run is running", "bad_manifest/manifest.json",
-                      "ladder.csv: missing column parameter", "tradeoff.csv: missing column bodies"):
+                      "ladder.csv: missing column parameter", "tradeoff.csv: missing column bodies",
+                      "tradeoff_motion.csv: missing column mover"):
             self.assertIn(words, said)
             self.assert_has(page, words)
         self.assertTrue((self.directory / "figures" / "figure3.png").exists())

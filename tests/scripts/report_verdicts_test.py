@@ -9,6 +9,8 @@ import pandas
 from report_data import PAPER, rows_of, write_run
 
 from cleave_scripts.figures import data, interface_cost, ladder_map, spread, style, times_by_size, verdicts
+from cleave_scripts.figures.claim import Claim, gain
+from cleave_scripts.figures.claim_values import noise
 from cleave_scripts.results.paper import SCENES
 
 
@@ -234,6 +236,14 @@ class FitTest(unittest.TestCase):
         steps = numpy.diff(indices.reshape(-1, 16, 4)) % 64
         self.assertTrue((steps == 1).all())
         numpy.testing.assert_array_equal(indices, spread.resample_indices(64))
+
+    def test_steps_of_two_places_are_not_drawn_together(self):
+        cells = tuple((place, "mindp", "none") for place in ("rocks 50", "rocks 100"))
+        claim = Claim("", "", "", cells, gain(*cells))
+        values = numpy.random.default_rng(5).normal(10, 1, (50, 1))
+        same = {place: pandas.DataFrame(values, columns=[("mindp", "none")]) for place, *_ in cells}
+        low, high = noise(claim, same)
+        self.assertTrue(-0.1 < low < -0.01 < 0.01 < high < 0.1, (low, high))
 
 
 class LadderTest(unittest.TestCase):

@@ -4,6 +4,7 @@ import os
 import pathlib
 import random
 import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -22,12 +23,14 @@ from cleave_scripts.torture import endings, two_processes
 from cleave_scripts.torture.cell_edits import changed_cell
 from cleave_scripts.torture.changes_of_values import ANY
 from cleave_scripts.torture.child import Ending
+from cleave_scripts.torture.findings import Keeper
 from cleave_scripts.torture.foreign_file import write_foreign
 from cleave_scripts.torture.guarded import Unreadable, guarded
 from cleave_scripts.torture.judge import Problem, judge, judge_file
 from cleave_scripts.torture.lanes import Lanes
 from cleave_scripts.torture.meaning import meaning
 from cleave_scripts.torture.problem_files import ARRAY_CHANGES, FILE_CHANGES
+from cleave_scripts.torture.trial import Finding
 
 MASS, FALL, COMPLIANCE, MU = 2.0, -0.1635, 1e-6, 0.5
 LOAD = -FALL / (1 / MASS + COMPLIANCE)  # impulse that carries the ball
@@ -264,6 +267,25 @@ class LanesTest(unittest.TestCase):
     def test_a_lane_that_dies_is_an_error(self):
         with self.assertRaisesRegex(ResultError, "lane 1 .* exit code 7"):
             self.watch(lambda lane, tally, tell: lane == 1 and os._exit(7))
+
+
+class FindingsTest(unittest.TestCase):
+
+    def test_what_repeats_a_finding_is_a_whole_command_and_leaves_what_was_found(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            out, trial = pathlib.Path(scratch) / "some out", types.SimpleNamespace(
+                kind="flips", number=7, seed=3, log=["$ cleave verify x"], findings=[Finding("a fault", "")], directory=pathlib.Path(scratch) / "trial")
+            trial.directory.mkdir()
+            (trial.directory / "input").touch()
+            out.mkdir()
+            Keeper(out).keep(trial, lambda _: None)
+            how = out / "findings" / "flips-7" / "how.txt"
+            words = shlex.split(how.read_text().splitlines()[0])
+            given = dict(zip(words[1::2], words[2::2]))
+            self.assertEqual({name: given.pop(name) for name in ("--trials", "--seed", "--only")}, {"--trials": "flips", "--seed": "3", "--only": "7"})
+            self.assertEqual(set(given), {"--minutes", "--out"})
+            Keeper(pathlib.Path(given["--out"]))
+            self.assertTrue(how.exists() and (out / "findings.jsonl").exists())
 
 
 class EndingsTest(unittest.TestCase):

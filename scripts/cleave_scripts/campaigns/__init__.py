@@ -1,1 +1,1 @@
-"""Here a campaign becomes jobs of a cluster."""
+"""Here specs of campaigns are loaded, changed and run by cleave sweep, or become jobs of a cluster."""

@@ -12,7 +12,7 @@ import re
 import shlex
 import subprocess
 
-from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.errors import ResultError, last_line
 from cleave_scripts.results.whole_file import write_text
 
 # Slurm runs a task once at a time, and no two submissions have a campaign at once: locks of other hosts are of dead tasks.
@@ -37,7 +37,7 @@ def run(words, allowed=(0,)):
     except OSError as error:
         raise ResultError(f"{words[0]} cannot be run: {error.strerror}") from None
     if done.returncode not in allowed:
-        raise ResultError((done.stderr.strip().splitlines() or [f"{words[0]} ended with exit code {done.returncode}"])[-1])
+        raise ResultError(last_line(done.stderr, f"{words[0]} ended with exit code {done.returncode}"))
     return done
 
 

@@ -10,7 +10,7 @@ import time
 from cleave_scripts.campaigns.spec import spec_text
 from cleave_scripts.results import option_types
 from cleave_scripts.results.command import say
-from cleave_scripts.results.errors import AlreadyTold, Interrupted, ResultError
+from cleave_scripts.results.errors import AlreadyTold, Interrupted, ResultError, last_line
 from cleave_scripts.results.programs import run_and_watch
 
 FAILED_CELLS = 2  # the exit code of a campaign whose results stand all the same
@@ -68,7 +68,7 @@ class Campaign:
         with self.command(program, "--dry-run") as (words, options):
             done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False, **options)
         if done.returncode != 0:
-            said = (done.stderr.strip().splitlines() or [f"cleave sweep stopped with exit code {done.returncode}"])[-1]
+            said = last_line(done.stderr, f"cleave sweep stopped with exit code {done.returncode}")
             raise ResultError(re.sub(r"^cleave sweep: ([^:]*\.toml:\d+: (?=[a-z]))?", lambda place: "--" if place[1] else "", said))
 
     def run(self, program, *words, force=False):

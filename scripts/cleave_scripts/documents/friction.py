@@ -2,7 +2,8 @@
 import statistics
 
 from cleave_scripts.documents.stored import need
-from cleave_scripts.measurements import coulomb_beside_siconos as siconos
+from cleave_scripts.measurements import bound_ratios, coulomb_beside_siconos as siconos
+from cleave_scripts.measurements.friction_bounds import DEFAULT_SWEEPS
 from cleave_scripts.measurements.friction_cost import CONE_OPTIONS, LAW_OPTIONS
 from cleave_scripts.measurements.friction_of_models import IN_A_STEP, MODELS
 from cleave_scripts.measurements.friction_ratios import markdown, waited
@@ -10,6 +11,7 @@ from cleave_scripts.table import text
 
 MADE_BY = "scripts/friction_models"
 VELOCITIES, MOTION = (("friction_velocities.csv", MADE_BY), ("friction_motion.csv", MADE_BY))
+BOUNDS = ("friction_bounds.csv", MADE_BY)
 COST = ("friction_cost.csv", "scripts/friction_cost")
 COULOMB = ("coulomb_peers.csv", "scripts/coulomb_peers")
 
@@ -62,11 +64,28 @@ def friction_cost(stored):
             f"Scenes that Coulomb's law moves, their steps by `{LAW_OPTIONS[1]}` from the impulses of the step before. {laws}")
 
 
+def friction_bounds(stored):
+    rows = need(stored.table(*BOUNDS), "bounds of friction", "sweep_ms")
+    return (f"How far the bounds of the box are from mu times the normal impulses that the step ends on, % of these (`bound_mismatch`, median over measured "
+            f"steps), by the Gauss-Seidel sweeps that predict them from the impulses of the step before; in brackets what the sweeps beyond {DEFAULT_SWEEPS}, "
+            f"the default, cost, % of t_s of `exact` on one thread. Each number of sweeps moves the scene its own way, so that chance is in these, too. Last, "
+            f"without a sweep: mu times the normal impulses of the step before where `box-converged` moves the scene, in brackets the measured steps in which "
+            f"bounds did not settle (`{MADE_BY}`; {stored.origin(BOUNDS[0])}):\n\n"
+            f"{bound_ratios.table(rows)}\n\n{bound_ratios.verdict(rows)}")
+
+
 def coulomb_peers(stored):
     rows = need(stored.table(*COULOMB), "Coulomb's law beside Siconos", "peer_siconos_error")
     return (f"`exact` and the solvers of Siconos on the same recorded steps, {text.listed(siconos.MUS)} as coefficient of friction, from the same warm start "
             f"(`{COULOMB[1]}`; {stored.origin(COULOMB[0])}). {siconos.counts(rows)}\n\n{siconos.scene_table(rows)}")
 
 
+def coulomb_beyond(stored):
+    rows = need(stored.table(*COULOMB), "Coulomb's law beside Siconos", "peer_siconos_error")
+    found = sum(any(siconos.beyond(row)) for row in rows)
+    return (f"{found} of {len(rows)} rows, a row a problem and solver of Siconos (`{COULOMB[1]}`; {stored.origin(COULOMB[0])}). Left out are "
+            f"{text.listed([f'`{scene}`' for scene in siconos.LEFT_OUT])}: their motors are refused.\n\n{siconos.beyond_table(rows)}")
+
+
 BLOCKS = {"friction_velocities": friction_velocities, "friction_motion": friction_motion, "friction_cost": friction_cost,
-          "coulomb_peers": coulomb_peers}
+          "friction_bounds": friction_bounds, "coulomb_peers": coulomb_peers, "coulomb_beyond": coulomb_beyond}

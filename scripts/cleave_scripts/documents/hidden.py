@@ -1,7 +1,11 @@
 """What the paper leaves open: what holds under which choice, and the choice that fits its Table 1 best."""
+import dataclasses
 import statistics
 
 from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements import hidden_choices
+from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.names import title
 from cleave_scripts.results.paper import COMBINATIONS, PAPER, SCENES, load_paper_table1
 from cleave_scripts.table import text
 from cleave_scripts.table.cells import Cell, SceneTable, Times
@@ -10,10 +14,10 @@ from cleave_scripts.table.timing_table import mark_lowest
 
 MADE_BY = "scripts/hidden_choices"
 CELLS, CLAIMS, FIT = ((f"hidden_choices{name}.csv", MADE_BY) for name in ("", "_claims", "_fit"))
-CHOICES = ("max_bodies", "body_order", "bfs", "mr", "mix")
+DEFAULT = {choice: str(value) for choice, value in dataclasses.asdict(hidden_choices.DEFAULT).items()}
+CHOICES = tuple(DEFAULT)
 TITLES = ("n_max", "bodies numbered", "bfs", "mr", "mix")
-DEFAULT = {"max_bodies": "25", "body_order": "scene", "bfs": "bfs", "mr": "mr", "mix": "mix"}
-PAPERS_LOGS = "5"
+PAPERS_LOGS = str(hidden_choices.PAPERS_LOGS)
 SHOWN = 3  # settings of the best
 
 
@@ -55,17 +59,17 @@ def fit(stored):
         rows = _fits(stored, by)
         lines += [_fit_line(f"{name}, {place} of {len(rows)}", row) for place, row in enumerate(rows[:SHOWN], 1)]
         lines += [_fit_line(f"{name}, {place} of {len(rows)}: the defaults", row) for place, row in enumerate(rows, 1) if _is(row, DEFAULT)]
-    head = text.table(["by", *TITLES, "mean", *(scene.replace("_", " ").title() for scene in SCENES)], lines)
+    head = text.table(["by", *TITLES, "mean", *map(title, SCENES)], lines)
     return f"{head}\n\n{_choice_means(stored)}"
 
 
 def _choice_means(stored):
     """Of every choice the mean correlation by time over the settings that make it."""
     rows, parts = _fits(stored, "time"), []
-    for choice, title in zip(CHOICES, TITLES):
+    for choice, words in zip(CHOICES, TITLES):
         values = dict.fromkeys(row[choice] for row in rows)
         means = [f"`{value}` {statistics.mean(float(row['mean']) for row in rows if row[choice] == value):.2f}" for value in values]
-        parts.append(f"{title}: {', '.join(means)}")
+        parts.append(f"{words}: {', '.join(means)}")
     return f"Mean correlation by time of all settings with a choice: {'; '.join(parts)}."
 
 
@@ -74,7 +78,10 @@ def _timed(stored, setting, cell):
     scene, partitioner, refiner = cell
     wanted = {"scene": scene, "refiner": refiner, "solver": PAPER["solver"], "max_bodies": setting["max_bodies"],
               "body_order": setting["body_order"], "partitioner": setting.get(partitioner, partitioner), "logs": PAPERS_LOGS}
-    return next(row for row in stored.table(*CELLS) if all(row[name] == value for name, value in wanted.items()))
+    found = next((row for row in stored.table(*CELLS) if all(row[name] == value for name, value in wanted.items())), None)
+    if found is None:
+        raise ResultError(f"stored hidden_choices.csv has no row of {', '.join(wanted.values())}; {MADE_BY} makes it anew")
+    return found
 
 
 def best_table(stored):
@@ -88,7 +95,7 @@ def best_table(stored):
             cells.append(Cell(*names, Times(float(row["t_s_ms"]), float(row["t_pr_ms"])), Times(*paper[(scene, *names)]), int(row["steps"])))
         mark_lowest(scene, cells, paper)
         tables.append(SceneTable(scene, cells[0].ok, "1", PAPER["solver"], cells))
-    said = ", ".join(f"{title} `{setting[choice]}`" for choice, title in zip(CHOICES, TITLES))
+    said = ", ".join(f"{words} `{setting[choice]}`" for choice, words in zip(CHOICES, TITLES))
     return format_markdown(tables, [f"Setting: {said}. Made on {stored.origin(CELLS[0])}."])
 
 

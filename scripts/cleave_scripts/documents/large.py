@@ -20,10 +20,10 @@ def running_simulation(stored):
 
 def large_scenes(stored):
     rows = need(stored.table(*LARGE), "large scenes", "dissection_mflop", "dense_gflop_per_s")
-    piles, silos = scenes.markdown(rows)
+    piles, silos, left_out = scenes.markdown(rows)
     return (f"A step by `exact`, from the impulses recorded with it, medians of {_rounds(rows)} replays (`{LARGE[1]}`; {stored.origin(LARGE[0])}). "
-            f"Rock piles on two threads:\n\n{piles}\n\nSilos; the dense factorisation is that of {scenes.DENSE_ROWS} rows on as many "
-            f"threads, in the same run:\n\n{silos}")
+            f"{left_out} Rock piles; a sweep is one of `{running.SWEEPER}` on the same step in the same round:\n\n{piles}\n\nSilos; the dense "
+            f"factorisation is that of {scenes.DENSE_ROWS} rows on as many threads, in the same run:\n\n{silos}")
 
 
 BLOCKS = {"running_simulation": running_simulation, "large_scenes": large_scenes}

@@ -12,9 +12,8 @@ def _what(row):
     if not row["ours"]:
         return row["row"]
     value = float(row["ours"])
-    shown = text.percent(value) if row["column"] == "t_s_ms" and row["statistic"] != "slope" else text.number(value)
-    is_exponent = "exponent" in row["row"]
-    return f"{row['row']} ({text.number(value) if is_exponent else shown})"
+    is_share = row["column"] == "t_s_ms" and "exponent" not in row["row"]
+    return f"{row['row']} ({text.percent(value) if is_share else text.number(value)})"
 
 
 def verdicts(stored):

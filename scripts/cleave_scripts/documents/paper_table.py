@@ -6,6 +6,7 @@ import subprocess
 from cleave_scripts.documents.stored import need
 from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.names import title
 from cleave_scripts.results.paper import PAPER, SCENES, load_paper_table1
 from cleave_scripts.table import text
 from cleave_scripts.table.formats import format_markdown, format_text
@@ -30,9 +31,9 @@ def table1(stored):
 def excerpt(stored):
     tables = [table for table in _tables(stored) if table.scene == EXCERPT_SCENE]
     lines = format_text(need(tables, EXCERPT_SCENE), [])
-    title, *rest = lines[lines.index("\n\n") + 2:].splitlines()
+    heading, *rest = lines[lines.index("\n\n") + 2:].splitlines()
     first, second, *_, last = _checked(stored)
-    return "```\n" + "\n".join([title, *rest[:5], "...", *rest[14:], "", first, second, "...", last]) + "\n```"
+    return "```\n" + "\n".join([heading, *rest[:5], "...", *rest[14:], "", first, second, "...", last]) + "\n```"
 
 
 def _checked(stored):
@@ -99,7 +100,7 @@ def _stalls(rows):
         mine = [row for row in rows if row["scene"] == scene]
         if mine:
             share = sum(row.integer("fallbacks") > 0 for row in mine) / len(mine)
-            shares.append(f"{text.percent(share)} of the rows of {scene.replace('_', ' ').title()}")
+            shares.append(f"{text.percent(share)} of the rows of {title(scene)}")
     return ("Block pivoting, which the paper's solver rests on, stalls and hands over to the interior point on "
             f"{text.listed(shares)}.")
 

@@ -33,17 +33,22 @@ SETS = {
     "tradeoff.csv": (
         "recorded steps by every solver, those that iterate to residuals of 1e-1 to 1e-8",
         "scripts/tradeoff"),
-    "time_to_accuracy.png": ("the picture of it", "scripts/tradeoff"),
+    "price_of_accuracy.png": ("the picture of six of these steps", "scripts/tradeoff"),
+    "time_to_accuracy.png": ("the same of all that are drawn", "scripts/tradeoff"),
     "crossover.png": ("where `exact` overtakes those that iterate", "scripts/tradeoff"),
     "accuracy_profile.png": ("how often each of these solvers is how near to the fastest", "scripts/tradeoff"),
     "tradeoff_partitions.csv": (
         "recorded steps by direct and iterative solvers on parts, with many partitions",
         "scripts/tradeoff"),
     "tradeoff_motion.csv": ("scenes that one solver alone has moved", "scripts/tradeoff"),
+    "tradeoff_motion.png": ("the picture of it", "scripts/tradeoff"),
     "model_savings.csv": ("the scenes with every row and with those that can matter, in turn", "scripts/model_savings"),
     "friction_motion.csv": ("the scenes, each moved under every friction model", "scripts/friction_models"),
     "friction_velocities.csv": (
         "recorded steps under `box`, `box-converged` and `cone`, held against Coulomb's law",
+        "scripts/friction_models"),
+    "friction_bounds.csv": (
+        "the bounds of the box by the sweeps that predict them, and what a sweep costs",
         "scripts/friction_models"),
     "friction_cost.csv": (
         "steps under the cone and under Coulomb's law beside the same steps under the box, in turn",
@@ -51,6 +56,9 @@ SETS = {
     "coulomb_peers.csv": (
         "recorded steps under Coulomb's law, by `exact` and by Siconos's solvers",
         "scripts/coulomb_peers"),
+    "peer_times.csv": (
+        "recorded steps of settled piles by `exact`, by solvers of Bullet, DART and Ipopt, and by MuJoCo, in turn",
+        "scripts/peers"),
     "campaign_costs.csv": (
         "what a campaign of very many cells costs, and that of the paper besides its solves",
         "scripts/campaign_costs --paper out/report/paper"),
@@ -91,9 +99,9 @@ SETS = {
 
 
 def command_of(stored, name):
-    """What made it as it is stored, less where it went."""
+    """What made it as it is stored, less where it went; files of a directory that are sets of their own do not say."""
     known = stored.provenance()
-    entry = known.get(name) or next((entry for file, entry in known.items() if file.startswith(f"{name}/")), None)
+    entry = known.get(name) or next((entry for file, entry in known.items() if file.startswith(f"{name}/") and file not in SETS), None)
     made_by = entry and entry.get("command") or SETS[name][1]
     return re.sub(r" --out \S+", "", made_by)
 

@@ -1,4 +1,5 @@
 """Threads, solvers against each other, and cold starts."""
+import dataclasses
 import math
 import statistics
 
@@ -28,21 +29,33 @@ def _share(share):
 def two_threads(stored):
     rows = need(stored.table(*THREADS), "two threads", "processes")
     found = thread_times.shares(rows)
-    piles, large = (thread_times.of_scene(found, scene) for scene in ("rock_pile", "large_rock_pile"))
+    piles, (direct, sweeps) = thread_times.of_scene(found, "rock_pile"), thread_times.large_rock_pile(found)
     solvers = list(dict.fromkeys(share.solver for share in piles))
     cells = {(share.bodies, share.cfm, share.solver): _share(share) for share in piles}
     lines = [[bodies, f"{cfm:g}", *(cells[bodies, cfm, solver] for solver in solvers)]
              for bodies, cfm in dict.fromkeys((share.bodies, share.cfm) for share in piles)]
     far = thread_times.far_in_words(found)
-    least = {step: thread_times.least(of_step) for step, of_step in thread_times.by_step(large).items()}
+    large = []
+    for step, of_step in thread_times.by_step(direct).items():
+        least = thread_times.least(of_step)
+        large.append([step, f"`{least.combination}` {_share(least)}", *dataclasses.astuple(thread_times.counts(of_step))])
     return (f"Two threads as a share of the ceiling: of what two independent solves on one thread each reach side by side in the "
             f"same run, 2 on an ideal machine. In brackets t_s of one thread over that of two, and the ceiling; where that is "
             f"below {thread_times.LEAST_CEILING} no share is measured (-). Medians of {len({row['round'] for row in rows})} "
             f"rounds (`{THREADS[1]}`; {stored.origin(THREADS[0])}){f'; {far}' if far else ''}. Rock piles:\n\n" +
             text.table(["rocks", "cfm", *(f"`{solver}`" for solver in solvers)], lines) +
-            f"\n\n`schur` on Large Rock Pile, the least of {len({share.combination for share in large})} combinations:\n\n" +
-            text.table([f"step {step}" for step in least],
-                       [[f"`{share.combination}` {_share(share)}" for share in least.values()]]))
+            "\n\n`schur` on Large Rock Pile, the least over the combinations, and how many are below what was asked:\n\n" +
+            text.table(["step", "least share", *thread_times.COUNTED], large) + _sweeps(sweeps))
+
+
+def _sweeps(found):
+    """Of solvers that iterate on Large Rock Pile; nothing where none was measured."""
+    if not found:
+        return ""
+    by_solver = {solver: [share for share in found if share.solver == solver] for solver in dict.fromkeys(share.solver for share in found)}
+    lines = [[f"`{solver}`", *map(_share, of_solver), thread_times.verdict(of_solver)] for solver, of_solver in by_solver.items()]
+    return ("\n\nSolvers that iterate, on the same steps:\n\n" +
+            text.table(["", *(f"step {step}" for step in thread_times.by_step(found)), "asked of every step"], lines))
 
 
 def model(stored):
@@ -63,9 +76,11 @@ def modelled_workers(stored):
     """The same of recorded steps, step by step."""
     rows = need(stored.table(*MODELLED), "modelled workers")
     rounds = len({row["round"] for row in rows})
+    steps, waited = modelled_times.compare(rows)
+    parts = [modelled_times.lines_of_costs(rows), modelled_times.lines_of_steps(steps, waited), modelled_times.lines_of_speed_ups(steps)]
     return (f"`{MODELLED[1]}`: replays of recorded steps with one and with two threads, in turn, the fastest of {rounds} rounds, seed "
             f"{text.listed(sorted({row['seed'] for row in rows}))}, `{'+'.join(BEST)}` ({stored.origin(MODELLED[0])}). "
-            f"{modelled_times.lines_of_costs(rows)}\n\n{modelled_times.lines_of_steps(*modelled_times.compare(rows))}")
+            + "\n\n".join(filter(None, parts)))
 
 
 def solver_benchmark(stored):

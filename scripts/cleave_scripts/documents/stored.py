@@ -19,7 +19,7 @@ class Stored:
 
     def __init__(self, root):
         self.root = pathlib.Path(root)
-        self.gaps = {}  # what was asked for below results/ and is not there, or not with its origin: why
+        self.gaps = {}  # what was asked for below results/ and is not there, not whole, or not of a known and clean origin: why
 
     def has(self, name, made_by):
         """Whether a file or directory is there; where it is not, that is a gap."""
@@ -35,7 +35,13 @@ class Stored:
 
     @functools.cache
     def runs(self, name, made_by):
-        return load_runs([self.path(name, made_by)])
+        """What a run has to say of itself, such as that it was stopped, is a gap."""
+        runs = load_runs([self.path(name, made_by)])
+        for run in runs:
+            if run.notes:
+                told = (note.removeprefix(f"{run.steps_path}: ") for note in run.notes)
+                self.gaps[str(run.steps_path.relative_to(self.root))] = "; ".join(told)
+        return runs
 
     def rows(self, name, made_by):
         return [row for run in self.runs(name, made_by) for row in run.rows]
@@ -67,6 +73,8 @@ class Stored:
             f"{entry['build']['git_hash'][:10]}" for entry in entries)
         if not texts:
             self.gaps[name] = "machine and commit not recorded"
+        elif any(entry["build"].get("git_dirty") != "false" for entry in entries):
+            self.gaps[name] = "made by a build with local changes or without a commit"
         return "; ".join(texts) or self.gaps[name]
 
 

@@ -1,6 +1,8 @@
 """What partitions are worth: which solver is fastest with its best partition, and what taking over parts from step to step saves."""
-from cleave_scripts.documents.stored import need
-from cleave_scripts.measurements import partition_over_time, partition_worth, regret
+import statistics
+
+from cleave_scripts.documents.stored import NoResults, need
+from cleave_scripts.measurements import modelled_times, partition_over_time, partition_worth, regret
 from cleave_scripts.table import text
 
 OVER_TIME = ("partition_over_time.csv", "scripts/partition_over_time")
@@ -26,51 +28,90 @@ def over_time(stored):
             f"with a constraint ({stored.origin(OVER_TIME[0])}):\n\n" + text.table(["", "t_pr / t_s", *rules], lines))
 
 
+def _worth_rows(stored, what, *columns):
+    """Rows of rounds; where only one was measured, as was done before, that is no measurement."""
+    rows = need(stored.table(*WORTH), what, *columns)
+    if "round" not in rows[0]:
+        raise NoResults(f"What is stored tells no noise, as each cell was timed once: `{WORTH[1]}` makes `results/{WORTH[0]}` anew, in rounds.")
+    return rows
+
+
 def _partition(cell):
     return cell.partition.replace("@effort=best", ", best").replace("@split=", ", ").replace("@max-bodies=", ", ")
 
 
-def _worth_cell(cell):
-    return text.number(cell.time_ms) + ("" if cell.partition == "-" else f" ({_partition(cell)})")
+def _parts(cell):
+    return "one part" if cell.parts == 1 else f"{cell.parts} parts, {cell.interface_rows} interface rows"
 
 
-def _winner(problem, workers):
-    solver = problem.winner(workers)
-    return f"{partition_worth.NAMES[solver].split(',')[0]}, {text.number(problem.speed_up(solver, workers))}"
+def _kernel(name):
+    return partition_worth.NAMES[name].partition(",")[0]
+
+
+def _worth_cell(cells, kernel):
+    if kernel not in cells:
+        return "-"
+    cell = cells[kernel]
+    if cell.cuts:
+        return f"{text.number(cell.time_ms)} ({_partition(cell)})"
+    return text.number(cell.time_ms) + (f" ({_kernel(cell.solver)}, {_partition(cell)}: {_parts(cell)})" if cell.solver != kernel else "")
+
+
+def _fastest(cells, name=str):
+    """What is named in a column of winners; cells: {what: Cell}"""
+    found = partition_worth.fastest(cells)
+    return f"{'undecided: ' if len(found) > 1 else ''}{text.listed(map(name, found), 'or')}"
+
+
+def _winner(problem, cells):
+    first = cells[partition_worth.fastest(cells)[0]]
+    return f"{_fastest(cells, _kernel)}, {text.number(problem.speed_up(first))}"
+
+
+def _rule(rows):
+    return (f"Of {len({row['round'] for row in rows})} rounds the odd ones choose the partition and the even ones tell its time; every replay is put at the pace of "
+            f"`{partition_worth.WHOLE_SYSTEM}` and of kernels with one part (`{partition_worth.ONE_PART}`) in it. What is fastest in the odd rounds is named where every "
+            f"other takes at least {100 * partition_worth.LEAST_LEAD:.0f} % longer in each even one; those that do not are undecided with it")
+
+
+def _model(rows):
+    """What the file says of the model on as many workers as were measured."""
+    errors = partition_worth.model_errors(rows)
+    of_all = statistics.median(abs(item.error) for item in errors)
+    slow = [abs(item.error) for item in errors if item.slow]
+    of_slow = f", by {100 * statistics.median(slow):.1f} % of the {len(slow)} that take {modelled_times.LEAST_MS} ms and more" if slow else ""
+    low = sum(item.error < 0 for item in errors) / len(errors)
+    return (f"On two workers t_s is both modelled and measured, of {len(errors)} cells: the model is off by {100 * of_all:.1f} % in the median{of_slow}, "
+            f"and too low in {text.percent(low)} of all.")
 
 
 def worth(stored):
-    """The least t_pr + t_s of every solver, and who wins on more workers."""
-    problems = partition_worth.problems(need(stored.table(*WORTH), "partitions and their worth", "threads"))
+    """The least t_pr + t_s of every kernel with a cut and of the whole system, and who wins on more workers."""
+    rows = _worth_rows(stored, "partitions and their worth", "threads")
     lines = []
-    for problem in problems:
+    for problem in partition_worth.problems(rows):
         scene, bodies, cfm = problem.key
-        two = min(problem.measured, key=lambda solver: problem.measured[solver].time_ms)
         lines.append([f"{scene.replace('_', ' ')}, {bodies} bodies, {problem.rows} rows, cfm {float(cfm):g}",
-                      *(_worth_cell(problem.best[solver, 1]) for solver in partition_worth.NAMES),
-                      f"{partition_worth.NAMES[two].split(',')[0]}, {text.number(problem.base_ms / problem.measured[two].time_ms)}",
-                      *(_winner(problem, workers) for workers in SHOWN_WORKERS)])
-    return (f"Least t_pr + t_s of every solver over all partitions tried, ms, one thread, and in brackets the partition that gave it: partitioner, its "
-            f"effort or split, most bodies of a part, refiner (`{WORTH[1]}`; "
-            f"{stored.origin(WORTH[0])}); then the fastest on two threads, and of the modelled {' and '.join(map(str, SHOWN_WORKERS))} workers, "
-            "with its speed-up against the fastest on one:\n\n" +
-            text.table(["", *partition_worth.NAMES.values(), "two threads", *(f"{workers} workers" for workers in SHOWN_WORKERS)], lines))
-
-
-def _kind_cell(kind):
-    parts = "one part" if kind.parts == 1 else f"{kind.parts} parts, {kind.interface_rows} interface rows"
-    return f"{text.number(kind.cell.time_ms)} ({_partition(kind.cell)}: {parts})"
+                      *(_worth_cell(problem.best[1], kernel) for kernel in partition_worth.NAMES), _fastest(problem.best[1], _kernel),
+                      *(_winner(problem, cells) for cells in (problem.measured, *(problem.best[workers] for workers in SHOWN_WORKERS)))])
+    return ("Least t_pr + t_s over all partitions tried, ms, one thread: of every kernel with a partition that cuts rows, and of the whole system, which "
+            "kernels solve too where nothing is cut. In brackets the partition that gave it: partitioner, its "
+            f"effort or split, most bodies of a part, refiner (`{WORTH[1]}`; {stored.origin(WORTH[0])}). Then the fastest on one thread and on two, and of the modelled "
+            f"{' and '.join(map(str, SHOWN_WORKERS))} workers, with the speed-up against the fastest on one. {_rule(rows)}, with the speed-up of the first:\n\n" +
+            text.table(["", *partition_worth.NAMES.values(), "one thread", "two threads", *(f"{workers} workers" for workers in SHOWN_WORKERS)], lines) +
+            f"\n\n{_model(rows)}")
 
 
 def semantic(stored):
     """Parts after the groups that a scene names against parts that are found."""
-    found = partition_worth.kinds(need(stored.table(*WORTH), "semantic parts", "parts"))
-    kinds = (partition_worth.WHOLE, partition_worth.RUNS, partition_worth.FOUND)
-    lines = [[f"{scene.replace('_', ' ')}, {bodies} bodies, {rows} rows", partition_worth.NAMES[solver], *(_kind_cell(of_kind[kind]) for kind in kinds)]
-             for ((scene, bodies, _), rows, solver), of_kind in found.items()]
-    return (f"Least t_pr + t_s, ms, one thread, of parts after the groups of bodies that the scene names (`semantic`: whole, and cut into runs) and of all "
-            f"parts that are found from the graph, each with its best size and refiner (`{WORTH[1]}`; {stored.origin(WORTH[0])}):\n\n" +
-            text.table(["", "kernel", *kinds], lines))
+    rows = _worth_rows(stored, "semantic parts", "parts")
+    kinds = (partition_worth.WHOLE, partition_worth.RUNS, partition_worth.FOUND, partition_worth.UNCUT)
+    lines = [[f"{scene.replace('_', ' ')}, {bodies} bodies, {count} rows", partition_worth.NAMES[solver],
+              *(f"{text.number(of_kind[kind].time_ms)} ({_partition(of_kind[kind])}: {_parts(of_kind[kind])})" if kind in of_kind else "-" for kind in kinds),
+              _fastest(of_kind)] for ((scene, bodies, _), count, solver), of_kind in partition_worth.kinds(rows).items()]
+    return (f"Least t_pr + t_s, ms, one thread, of parts after the groups of bodies that the scene names (`semantic`: whole, and cut into runs), of all "
+            f"parts that are found from the graph, and of partitions that cut no row, each with its best size and refiner (`{WORTH[1]}`; {stored.origin(WORTH[0])}). "
+            f"{_rule(rows)}:\n\n" + text.table(["", "kernel", *kinds, "fastest"], lines))
 
 
 def regret_of_auto(stored):

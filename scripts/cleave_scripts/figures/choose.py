@@ -89,11 +89,14 @@ def same_setup_with(blocks, scene, solver, partitioners):
 
 
 def merged_runs(group):
-    """All rows of a group, each step of a seed once: where a run was repeated, with the medians of its times."""
+    """All rows of a group, each step of a seed once: where a run was repeated, with the medians of its times; repeats that failed do not
+    count beside others."""
     rows = pandas.concat([part.rows for part in group], ignore_index=True)
     keys = [
         column for column in ("seed", "step", "partitioner", "refiner", "label") if column in rows.columns
     ]
+    ok = rows["status"] == "ok"
+    rows = rows[ok | ~ok.groupby([rows[key] for key in keys], dropna=False).transform("any")].reset_index(drop=True)
     repeated = rows.groupby(keys, dropna=False)
     for column in rows.columns[rows.columns.str.endswith("_ms")]:
         rows[column] = repeated[column].transform("median")

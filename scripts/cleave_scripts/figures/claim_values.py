@@ -49,7 +49,7 @@ def noise(claim, found):
     The least of k figures is below each of them, and noise pulls it further down. So its interval is not that
     of the least, but the least ends of the k intervals, each at 1 - (1 - CONFIDENCE) / k.
     """
-    samples = _reduced(claim, found, {place: resample_indices(len(table)) for place, table in found.items()})
+    samples = _reduced(claim, found, {place: resample_indices(len(table), place) for place, table in found.items()})
     parts = getattr(claim.figure, "parts", (claim.figure,))
     confidence = 1 - (1 - CONFIDENCE) / len(parts)
     ends = [interval(_figure(part, samples), confidence) for part in parts]

@@ -10,10 +10,11 @@ def block_length(steps):
     return max(1, round(steps**(1 / 3)))
 
 
-def resample_indices(steps):
-    """(RESAMPLES, steps) indices: whole blocks of successive steps drawn with replacement, ends joined."""
+def resample_indices(steps, place=""):
+    """(RESAMPLES, steps) indices: whole blocks of successive steps drawn with replacement, ends joined. What was measured in
+    different places has nothing in common: each draws its own."""
     block = block_length(steps)
-    starts = numpy.random.default_rng(SEED).integers(steps, size=(RESAMPLES, -(-steps // block)))
+    starts = numpy.random.default_rng([SEED, *place.encode()]).integers(steps, size=(RESAMPLES, -(-steps // block)))
     return ((starts[:, :, None] + numpy.arange(block)) % steps).reshape(RESAMPLES, -1)[:, :steps]
 
 

@@ -1,7 +1,11 @@
 """Table 1 and the verdicts: their numbers, files and HTML."""
+import dataclasses
 import html
 
+import pandas
+
 from cleave_scripts.figures import page, style
+from cleave_scripts.figures.choose import merged_runs
 from cleave_scripts.figures.table_html import chip, table1, verdict_table
 from cleave_scripts.figures.tree import NoData
 from cleave_scripts.figures.verdicts import as_frame
@@ -10,6 +14,7 @@ from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.manifest import machine
 from cleave_scripts.results.names import title
 from cleave_scripts.results.paper import load_paper_table1
+from cleave_scripts.results.steps import Row
 from cleave_scripts.results.whole_file import write_text
 from cleave_scripts.table.formats import FORMATS
 from cleave_scripts.table.timing_table import build_tables
@@ -26,7 +31,7 @@ def scene_tables(data):
     """(scene tables, faults): a scene that cannot be averaged becomes a line; the others stay."""
     tables, faults = [], []
     for scene, group in data.main.items():
-        rows = _first_rows(group)
+        rows = _rows(group)
         absent = [column for column in NEEDED if column not in rows[0]]
         try:
             if absent:
@@ -38,14 +43,16 @@ def scene_tables(data):
     return tables, faults
 
 
-def _first_rows(group):
-    """The rows of a scene as Table 1 wants them; of repeated runs the first, as in the figures."""
-    rows = {}
-    for block in group:
-        for index in block.rows.index:
-            row = block.experiment.table_rows[index]
-            rows.setdefault((row.get("seed"), row["step"], row["partitioner"], row["refiner"]), row)
-    return list(rows.values())
+def _rows(group):
+    """The rows of a scene as Table 1 wants them: where a run was repeated, with the medians of its times, as in the figures."""
+    written = [[block.experiment.table_rows[index] for index in block.rows.index] for block in group]
+    merged = merged_runs([dataclasses.replace(block, rows=block.rows.assign(written=rows)) for block, rows in zip(group, written)])
+    return [_row(row) for _, row in merged.iterrows()]
+
+
+def _row(merged):
+    times = {name: repr(float(merged[name])) for name in merged["written"] if name.endswith("_ms") and pandas.notna(merged[name])}
+    return Row(merged["written"] | times, merged["written"].path, merged["written"].line)
 
 
 def table1_body(data, tables, faults, directory):

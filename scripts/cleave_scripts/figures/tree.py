@@ -6,7 +6,7 @@ import pathlib
 import pandas
 
 from cleave_scripts.ladder.cells import CAMPAIGN as LADDER_CAMPAIGN
-from cleave_scripts.measurements import accuracy
+from cleave_scripts.measurements import accuracy, motion_of_solvers
 from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.campaign import run_files_below
 from cleave_scripts.results.errors import ResultError
@@ -25,7 +25,7 @@ NOT_MEASURED = ("", "-", "nan", "inf", "-inf")
 PARTS = ("options", "option_about", "build", "machine", "result")  # of a manifest, each an object
 
 
-TRADEOFF_FILE = "tradeoff.csv"
+TRADEOFF_FILE, MOTIONS_FILE = "tradeoff.csv", "tradeoff_motion.csv"
 CLAIMS_FILE, COUNTS = "hidden_choices_claims.csv", ("holds", "fails", "cannot_tell")
 
 
@@ -50,6 +50,7 @@ class Tree:
     ladder: object  # data frame of ladder.csv, or None
     claims: object  # of hidden_choices_claims.csv, or None
     accuracy: object  # problems of tradeoff.csv (measurements/accuracy.py), or None
+    motions: object  # of tradeoff_motion.csv (measurements/motion_of_solvers.py), or None
     messages: list  # what the reader of the report has to know, one line each
 
 
@@ -58,7 +59,7 @@ def read_tree(directory):
     directory = pathlib.Path(directory)
     if not directory.is_dir():
         raise ResultError(f"{directory}: no such directory")
-    tree = Tree(directory, [], None, None, None, [])
+    tree = Tree(directory, [], None, None, None, None, [])
     found = run_files_below(directory, "steps.csv", lambda error: tree.messages.append(f"{error}; its cells are left out"))
     steps = [(name, path) for name, path in found if LADDER_CAMPAIGN not in path.parts]  # whose runs ladder.csv judges
     ladders = sorted(directory.rglob("ladder.csv"))
@@ -77,6 +78,9 @@ def read_tree(directory):
     tradeoff = directory / TRADEOFF_FILE
     if tradeoff.is_file():
         tree.accuracy = _attempt(tree, _read_accuracy, tradeoff)
+    motions = directory / MOTIONS_FILE
+    if motions.is_file():
+        tree.motions = _attempt(tree, _read_motions, motions)
     return tree
 
 
@@ -158,7 +162,7 @@ def _read_ladder(path, tree):
 
 def _read_accuracy(path, tree):
     """Problems of what scripts/tradeoff wrote."""
-    rows, notes = load_steps(path, accuracy.COLUMNS)
+    rows, notes = load_steps(path, accuracy.NEEDED)
     tree.messages += notes
     kept = accuracy.of_whole_steps(rows)
     if len(kept) < len(rows):
@@ -167,6 +171,13 @@ def _read_accuracy(path, tree):
     if not all(accuracy.EXACT in problem.times_ms for problem in found):
         raise ResultError(f"{path}: no solver {accuracy.EXACT}")
     return found or None
+
+
+def _read_motions(path, tree):
+    """Motions of what scripts/tradeoff wrote."""
+    rows, notes = load_steps(path, motion_of_solvers.NEEDED)
+    tree.messages += notes
+    return motion_of_solvers.motions(rows) or None
 
 
 def _read_claims(path, tree):

@@ -7,7 +7,7 @@ import time
 
 from cleave_scripts.campaigns.sweep import Campaign
 from cleave_scripts.results.campaign import INDEX, campaign_cells, index_rows
-from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.errors import ResultError, last_line
 from cleave_scripts.results.steps import load_steps
 
 # The smallest run there is: a box that falls, one step, one row.
@@ -35,8 +35,7 @@ def measured(words, options):
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0:
-        last = (said.strip().splitlines() or ["no message"])[-1]
-        raise ResultError(f"{' '.join(map(str, words[:2]))} stopped with exit code {process.returncode}: {last}")
+        raise ResultError(f"{' '.join(map(str, words[:2]))} stopped with exit code {process.returncode}: {last_line(said)}")
     return time.monotonic() - start_s, usage.ru_maxrss * 1024 / 1e6
 
 

@@ -18,6 +18,7 @@ SCENES = {  # small enough for Gauss-Seidel to end
     "ladder_alternating": (),
     "ladder_incline": ("--boxes", 5),
 }
+LEFT_OUT = ("crane", "mixed_site")  # with motors, whose rows have bounds: cleave_peers refuses to give them to Siconos
 STEPS = (60, 200)  # in motion, and later
 CFMS, MUS = ("1e-5", "1e-7", "1e-9"), ("0.3", "0.5", "0.8")
 OURS = "exact"
@@ -51,16 +52,18 @@ def _solved(peers, directory, files):
         if ours.integer("contacts") == 0:
             continue
         errors = _errors(peers, directory / file.name)
+        our_error = errors.get(OURS, {}).get("siconos_error", "nan")
         for peer in theirs:
             found = errors.get(peer["solver"], {})
-            yield {**{name: ours[name] for name in COLUMNS if name in ours}, "siconos_error": errors[OURS]["siconos_error"],
+            yield {**{name: ours[name] for name in COLUMNS if name in ours}, "siconos_error": our_error,
                    "peer": base_name(peer["solver"]), "peer_status": peer["status"], "peer_iterations": peer["iterations"],
                    "peer_residual_m_per_s": found.get("residual_m_per_s", "nan"), "peer_siconos_error": found.get("siconos_error", "nan"),
-                   "velocity_difference_m_per_s": found.get("velocity_difference_m_per_s", "nan")}
+                   "velocity_difference_m_per_s": found.get("velocity_difference_m_per_s", "nan") if OURS in errors else "nan"}
 
 
 def _errors(peers, file):
-    """{solver: what Siconos says of its stored solution}; ours is the first by name, which velocities are compared with."""
+    """{solver: what Siconos says of its stored solution}; ours, where it stored one, is the first by name, which velocities are compared
+    with."""
     told = file.with_suffix(".csv")
     with open(told, "w", encoding="utf-8") as out:
         run([peers, "siconos-error", file], stdout=out)

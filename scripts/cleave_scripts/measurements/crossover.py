@@ -19,7 +19,8 @@ class Axis:
 
     def problems(self, found):
         """In ascending order."""
-        return sorted((problem for problem in found if problem.scene == SCENE and self.holds(problem)), key=self.of)
+        piles = (problem for problem in found if problem.scene == SCENE and not problem.is_settled)
+        return sorted(filter(self.holds, piles), key=self.of)
 
 
 AXES = (Axis("rows", f"mass ratio 1, cfm {CFM:g}", lambda problem: problem.rows, lambda problem: problem.mass_ratio == 1 and problem.cfm == CFM),

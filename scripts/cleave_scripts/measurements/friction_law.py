@@ -17,13 +17,17 @@ from cleave_scripts.results.errors import ResultError
 
 def friction_mismatch(path):
     """NaN where no contact carries anything."""
+    names = ("mass", "row_body", "jacobian", "rhs", "compliance", "friction_row", "friction_coefficient")
+    return mismatch_of(solved_arrays(path, names, ("impulse", "velocity")))
+
+
+def solved_arrays(path, names, of_solution):
+    """Arrays of a problem file with one solution, and arrays of that."""
     with h5py.File(path) as file:
         solutions = list(file.get("solution", {}).values())
         if len(solutions) != 1:
             raise ResultError(f"{path}: holds {len(solutions)} solutions, expected one")
-        solution = {name: solutions[0][name][()] for name in ("impulse", "velocity")}
-        names = ("mass", "row_body", "jacobian", "rhs", "compliance", "friction_row", "friction_coefficient")
-        return mismatch_of({name: file[name][()] for name in names} | solution)
+        return {name: file[name][()] for name in names} | {name: solutions[0][name][()] for name in of_solution}
 
 
 def mismatch_of(arrays):

@@ -5,7 +5,6 @@ import json
 import os
 import pathlib
 import re
-import shutil
 import subprocess
 import tempfile
 import time
@@ -14,13 +13,15 @@ from cleave_scripts.results.command import say
 from cleave_scripts.results.command_line import counted
 from cleave_scripts.results.errors import AlreadyTold, ResultError
 from cleave_scripts.results.programs import ROOT, git, run_and_watch
-from cleave_scripts.results.whole_file import write_text
+from cleave_scripts.results.whole_file import write_bytes, write_text
 from cleave_scripts.table import text
 
 TARGETS = ("csv", "manifest", "options", "scene", "problem")
 SOURCES = ROOT / "tests" / "fuzz"
 LONGEST_BYTES = 4096  # of an input
 TIMEOUT_S = 120  # of one input; far more than any takes, also on a busy machine
+GIVEN = "CLEAVE_FUZZ_PROGRAMS"  # the variable that names a folder of programs
+UNKNOWN = "unknown"  # the commit of these
 
 
 @dataclasses.dataclass
@@ -28,7 +29,7 @@ class Result:
     """Of the last run of a target; kept as DIR/NAME.json, so that targets may run apart, or again after a mend."""
     target: str
     date: str
-    commit: str  # whose program ran
+    commit: str  # whose program ran; UNKNOWN of programs that were given
     minutes: float
     executions: int
     edges: int  # of the program's branches that were reached
@@ -38,11 +39,11 @@ class Result:
 
 
 def find_programs(about):
-    """The folder of the programs: CLEAVE_FUZZ_PROGRAMS, or where they are built now. about: what is said of the work."""
-    given = os.environ.get("CLEAVE_FUZZ_PROGRAMS")
+    """The folder of the programs: what GIVEN says, or where they are built now. about: what is said of the work."""
+    given = os.environ.get(GIVEN)
     folder = pathlib.Path(given).resolve() if given else ROOT / "build" / "fuzz" / "tests" / "fuzz"
     if given and not all(os.access(folder / f"fuzz_{name}", os.X_OK) for name in TARGETS):
-        raise ResultError(f"CLEAVE_FUZZ_PROGRAMS is '{given}', which does not hold fuzz_{', fuzz_'.join(TARGETS)}")
+        raise ResultError(f"{GIVEN} is '{given}', which does not hold fuzz_{', fuzz_'.join(TARGETS)}")
     say(about + ("" if given else ", up to 7 more where nothing is built"))
     setup = [ROOT / "scripts" / "setup", "--preset", "fuzz", "--target", "fuzz_all"]
     if not given and subprocess.run(setup, check=False).returncode != 0:
@@ -105,15 +106,18 @@ def minimise(programs, name, out):
         code = run(command(programs, name, "-set_cover_merge=1", smallest, corpus, out / "corpus" / name), out / f"{name}.log")
         if code != 0:
             raise ResultError(f"fuzz_{name} stopped with exit code {code}; see {out / name}.log")
-        for file in corpus.iterdir():
-            if not file.name.startswith("finding-"):
-                file.unlink()
+        kept = {file.name for file in smallest.iterdir()}
         for file in smallest.iterdir():
-            shutil.copy(file, corpus / file.name)
+            write_bytes(corpus / file.name, file.read_bytes())
+    for file in corpus.iterdir():
+        if file.name not in kept and not file.name.startswith("finding-"):
+            file.unlink()
 
 
 def commit():
-    """What is checked out now."""
+    """What is checked out now, from which programs are built; of programs that are given nobody knows."""
+    if os.environ.get(GIVEN):
+        return UNKNOWN
     return git(ROOT, "rev-parse", "--short=10", "HEAD") + (" with local changes" if git(ROOT, "status", "--porcelain") else "")
 
 

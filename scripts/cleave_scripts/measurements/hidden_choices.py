@@ -33,7 +33,7 @@ class Setting:
 
     @property
     def is_default(self):
-        return self == Setting(DEFAULT_SIZE, "scene", "bfs", "mr", "mix")
+        return self == DEFAULT
 
     def name_of(self, partitioner):
         """What the cells of the campaign call one of the paper's partitioners."""
@@ -42,6 +42,9 @@ class Setting:
     @property
     def order(self):
         return self.body_order.partition("@")[0]
+
+
+DEFAULT = Setting(DEFAULT_SIZE, "scene", "bfs", "mr", "mix")  # of the program
 
 
 def settings(table):

@@ -16,7 +16,9 @@ SLOW = f"steps of {LEAST_MS} ms and more on two threads"
 KEY = ("scene", "bodies", "cfm", "step", "solver")
 COSTS = ("task_us", "graph_task_us", "timing_us", "stage_us")
 MODEL = "t_s_model_p2_ms"
-SHOWN = {"16": "t_s_model_p16_ms", "64": "t_s_model_p64_ms", "as many as tasks": "t_s_critical_path_ms"}
+WORKERS = "16"  # of a speed-up
+ASKED = {600: 6, 10000: 10}  # bodies: speed-up
+SHOWN = {WORKERS: "t_s_model_p16_ms", "64": "t_s_model_p64_ms", "as many as tasks": "t_s_critical_path_ms"}
 HEADER = ("scene", "bodies", "cfm", "step", "solver", "one thread, ms", "modelled on 2", "measured on 2", "error",
           *(f"modelled on {workers}" for workers in SHOWN))
 
@@ -31,6 +33,19 @@ class Step:
     median_error: float  # modelled over measured, both medians over the rounds, less 1
 
     @property
+    def problem(self):
+        return self.key[:-1]
+
+    @property
+    def solver(self):
+        return self.key[-1]
+
+    @property
+    def on_workers_ms(self):
+        """Modelled on WORKERS."""
+        return self.more_ms[list(SHOWN).index(WORKERS)]
+
+    @property
     def error(self):
         return self.modelled_ms / self.measured_ms - 1
 
@@ -39,8 +54,13 @@ class Step:
         return self.measured_ms >= LEAST_MS
 
 
-def _waited(row):
+def has_waited(row):
+    """Too long for a core, so that t_s says more of the machine's other work."""
     return float(row["t_s_waiting_ms"]) > MOST_WAITING * float(row["t_s_ms"])
+
+
+def waited_in_words(count):
+    return f"Solves that waited more than {100 * MOST_WAITING:.0f} % of t_s for a core are left out: {count}."
 
 
 def _step(key, one, two):
@@ -59,7 +79,7 @@ def compare(rows):
     """([Step], number of solves that waited for a core and are left out)"""
     cells, waited = {}, 0
     for row in rows:
-        if _waited(row):
+        if has_waited(row):
             waited += 1
         else:
             cells.setdefault(tuple(str(row[column]) for column in KEY), {}).setdefault(int(row["threads"]), []).append(row)
@@ -91,8 +111,46 @@ def lines_of_steps(steps, waited):
         of_medians = 100 * statistics.median(abs(step.median_error) for step in chosen)
         parts.append(f"{title[0].upper()}{title[1:]}: {len(chosen)}, median error {middle:.1f} %, from {least:+.0f} to "
                      f"{most:+.0f} %; with medians over the rounds in place of the fastest, median error {of_medians:.1f} %.\n\n{text.table(HEADER, map(_line, chosen))}")
-    parts.append(f"Solves that waited more than {100 * MOST_WAITING:.0f} % of t_s for a core are left out: {waited}.")
+    parts.append(waited_in_words(waited))
     return "\n\n".join(parts)
+
+
+@dataclasses.dataclass(frozen=True)
+class SpeedUp:
+    """Of a problem, whichever solver is the fastest."""
+    one: Step  # of least time on one thread
+    modelled: Step  # of least modelled time
+
+    @property
+    def ratio(self):
+        return self.one.one_ms / self.modelled.on_workers_ms
+
+    @property
+    def asked(self):
+        return ASKED[int(self.one.problem[1])]
+
+
+def speed_ups(steps):
+    """[SpeedUp] of the problems of so many bodies that something was asked of them."""
+    of_problem = {}
+    for step in steps:
+        if int(step.problem[1]) in ASKED:
+            of_problem.setdefault(step.problem, []).append(step)
+    return [SpeedUp(min(found, key=lambda step: step.one_ms), min(found, key=lambda step: step.on_workers_ms)) for found in of_problem.values()]
+
+
+def lines_of_speed_ups(steps):
+    """A table; nothing where no problem has so many bodies."""
+    def line(found):
+        scene, bodies, cfm, step = found.one.problem
+        return [scene, bodies, f"{float(cfm):g}", step, f"{text.number(found.one.one_ms)} (`{found.one.solver}`)",
+                f"{text.number(found.modelled.on_workers_ms)} (`{found.modelled.solver}`)", text.number(found.ratio),
+                f"{found.asked}, {text.holds(found.ratio >= found.asked)}"]
+    lines = [line(found) for found in speed_ups(steps)]
+    if not lines:
+        return ""
+    header = (*KEY[:-1], "fastest on one thread, ms", f"least modelled on {WORKERS}, ms", "speed-up", "asked")
+    return f"The fastest on one thread over the least modelled time on {WORKERS} workers, of any of these solvers:\n\n{text.table(header, lines)}"
 
 
 def lines_of_costs(rows):

@@ -9,6 +9,7 @@ same replay, round and step, and multiplied by its median over replays and round
 import dataclasses
 import statistics
 
+from cleave_scripts.measurements.pace import paces_of, place
 from cleave_scripts.results.rows import combination, has_parts, total_ms
 
 AUTO, BASELINE = "auto+none", "mindp+none"
@@ -38,21 +39,12 @@ class Regret:
         return self.regret <= MOST_REGRET and self.auto_ms <= self.baseline_ms
 
 
-def _paces(rows):
-    """{(replay, round, step): how much slower than usual WHOLE was there}"""
-    whole = {(row["replay"], row["round"], row["step"]): total_ms(row) for row in rows if row["solver"] == WHOLE}
-    usual = {}
-    for (_, _, step), time_ms in whole.items():
-        usual.setdefault(step, []).append(time_ms)
-    return {key: time_ms / statistics.median(usual[key[2]]) for key, time_ms in whole.items()}
-
-
 def _times(rows, name, paces=None):
     """{name(row): [ms in the even rounds, in the odd ones]}"""
     lists = {}  # by cell, by parity, by step
     for row in rows:
         of_cell = lists.setdefault(name(row), ({}, {}))
-        pace = paces[row["replay"], row["round"], row["step"]] if paces else 1
+        pace = paces[place(row)] if paces else 1
         of_cell[int(row["round"]) % 2].setdefault(row["step"], []).append(total_ms(row) / pace)
     return {cell: [statistics.fmean(map(statistics.median, steps.values())) for steps in of_cell] for cell, of_cell in lists.items()}
 
@@ -69,7 +61,7 @@ def _best(times, cells):
 def _regret(scene, solver, rows):
     """rows: of the scene."""
     chooses_kernel = solver == ANY_KERNEL
-    paces = _paces(rows) if chooses_kernel else None
+    paces = paces_of(rows, lambda row: row["solver"] == WHOLE) if chooses_kernel else None
     auto = [row for row in rows if row["solver"] == solver and combination(row) == AUTO]
     grid = _times([row for row in rows if row["partitioner"] != "auto" and (chooses_kernel or row["solver"] == solver)],
                   _cell_and_kernel if chooses_kernel else combination, paces)

@@ -6,7 +6,16 @@ import statistics
 from cleave_scripts.results.command_line import counted
 from cleave_scripts.table import text
 
-LAST_STEPS = {"rock_pile": 200, "log_tower": 500}  # scene: so many steps at the end count
+
+@dataclasses.dataclass(frozen=True)
+class Scene:
+    last: int  # so many steps at the end count
+    most: int | None = None  # steps that are run, whatever was asked for
+    options: tuple = ()
+
+
+# A silo stands from the start, and the factor of one of so many boxes is dear enough that a session carries it.
+SCENES = {"rock_pile": Scene(200), "log_tower": Scene(500), "silo": Scene(40, 50, ("--bodies", 800))}
 WAYS = {0: "anew", 1: "session"}  # the column session
 SWEEPS = 300  # of a solve by Gauss-Seidel, so that its preparation is little beside them
 SOLVER, SWEEPER = "exact", f"pgs@sweeps={SWEEPS}"
@@ -16,10 +25,14 @@ COLUMNS = ("scene", "bodies", "step", "session", "round", "rows", "factorization
 COUNTED = ("factorizations", "factor_reuses", "cg_iterations")
 
 
+def steps_of(scene, asked):
+    return min(asked, SCENES[scene].most or asked)
+
+
 def counted_rows(solved, scene, steps):
     """A row a step that counts: that of the exact solver, and what a sweep took in the same step."""
     sweep_ms = {row["step"]: row.number("t_s_ms") / SWEEPS for row in solved if row["solver"] == SWEEPER}
-    first = steps - LAST_STEPS[scene]
+    first = steps_of(scene, steps) - SCENES[scene].last
     return [{**row, "sweep_ms": f"{sweep_ms[row['step']]:.6g}"}
             for row in solved if row["solver"] == SOLVER and row.integer("step") >= first and row.integer("rows") > 0]
 
@@ -80,4 +93,16 @@ def _line(scene, session, cost):
 
 
 def markdown(rows):
-    return text.table(HEADER, [_line(*key, cost) for key, cost in costs(rows).items()])
+    """A table, and what a session saves."""
+    found = costs(rows)
+    return text.table(HEADER, [_line(*key, cost) for key, cost in found.items()]) + f"\n\n{_saved(found)}"
+
+
+def _saved(found):
+    """Of the scenes that were solved both ways."""
+    def ratio(scene, value):
+        return text.two_decimals(value(found[scene, 1]) / value(found[scene, 0]))
+    both = [scene for scene, session in found if session == 1 and (scene, 0) in found]
+    times, counts = ([f"{ratio(scene, value)} on {scene.replace('_', ' ')}" for scene in both]
+                     for value in (lambda cost: cost.t_s_ms, lambda cost: cost.sums["factorizations"]))
+    return f"With a session, of what a step takes without one: t_s {text.listed(times)}; factorisations {text.listed(counts)}."

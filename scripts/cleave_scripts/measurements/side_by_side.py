@@ -19,15 +19,15 @@ ATTEMPTS = 3
 MEDIANS = ("t_s_ms", "t_s_waiting_ms", "core_round_trip_ns")  # over the processes
 
 
-def solve(program, scratch, files, repeats, way, *options):
-    """A row a counted cell. The first of the files is replayed once more before all of them and once more after, which is
+def solve(program, scratch, files, repeats, way, *options, all_ok=True):
+    """A row a counted cell, of cells that failed too unless all have to be ok. The first of the files is replayed once more before all of them and once more after, which is
     not counted: so every process is solving for as long as another is at cells that count. Where that did not hold, all
     is solved again."""
     directories = [scratch / f"replay{number}" for number in range(way.processes)]
     before, after = (_in_another_folder(files[0], scratch / name) for name in ("before", "after"))
     for _ in range(ATTEMPTS):
         solved = replay_side_by_side(program, directories, [before, *files, after], *options, "--repeats", repeats,
-                                     "--threads", way.threads, all_ok=True)
+                                     "--threads", way.threads, all_ok=all_ok)
         uncounted = len(solved[0]) // (len(files) + 2)
         ends_s = [(directory / "steps.csv").stat().st_mtime for directory in directories]
         if _together(ends_s, [repeats * sum(row.number("t_s_ms") for row in rows[-uncounted:]) / 1000 for rows in solved]):

@@ -10,9 +10,12 @@ import statistics
 
 from cleave_scripts.measurements.side_by_side import WAYS
 from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.names import base_name, said_parameters
 from cleave_scripts.table import text
 
 LEAST_CEILING = 1.7  # below it a share says more of the machine
+ASKED_SHARE = 0.8  # of `schur` on every combination
+ASKED_OF_SWEEPS = {"pgs-colored": 0.75}  # least share of a solver that iterates
 FAR_NS = 300  # core_round_trip_ns from which cores are far apart, as the program says
 KEY = ("scene", "bodies", "cfm", "step", "solver", "partitioner", "refiner")
 
@@ -88,6 +91,12 @@ def of_scene(found, scene):
     return [share for share in found if share.scene == scene]
 
 
+def large_rock_pile(found):
+    """Its [Share] of `schur`, and those of solvers that iterate a number of times, whatever their residual."""
+    large = of_scene(found, "large_rock_pile")
+    return [[share for share in large if ("sweeps" in said_parameters(share.solver)) == iterates] for iterates in (False, True)]
+
+
 def by_step(found):
     """{step: [Share]}"""
     return {step: [share for share in found if share.step == step] for step in sorted({share.step for share in found})}
@@ -97,6 +106,31 @@ def least(found):
     """The least share that is measured; where none is, that of the highest ceiling."""
     return min((share for share in found if share.measured), key=lambda share: share.share,
                default=max(found, key=lambda share: share.ceiling))
+
+
+COUNTED = (f"below {ASKED_SHARE}", "measured", "combinations")
+
+
+@dataclasses.dataclass(frozen=True)
+class Counts:
+    """Of the shares of one step, as COUNTED."""
+    below: int  # measured, and less than was asked
+    measured: int
+    combinations: int
+
+
+def counts(found):
+    measured = [share for share in found if share.measured]
+    return Counts(sum(share.share < ASKED_SHARE for share in measured), len(measured), len(found))
+
+
+def verdict(found):
+    """'0.75, holds': what was asked of every step of one solver, and whether it holds; '-' where nothing was asked."""
+    asked = ASKED_OF_SWEEPS.get(base_name(found[0].solver))
+    if asked is None:
+        return "-"
+    worst = least(found)
+    return f"{asked}, " + ("not measured" if not worst.measured else text.holds(worst.share >= asked))
 
 
 def _told(share):
@@ -117,14 +151,17 @@ def _cells(share):
 
 
 def lines_of_shares(found):
-    """A table of the rock piles, and one of Large Rock Pile, where the least of the combinations is shown."""
+    """A table of the rock piles, one of Large Rock Pile, where the least of the combinations is shown, and one of solvers that iterate there."""
     times = ("one thread, ms", "ratio", "ceiling")
     piles = [[share.bodies, f"{share.cfm:g}", share.solver, *_cells(share)] for share in of_scene(found, "rock_pile")]
-    large = [[step, least(of_step).combination, *_cells(least(of_step)),
-              f"{sum(share.measured for share in of_step)} of {len(of_step)}"]
-             for step, of_step in by_step(of_scene(found, "large_rock_pile")).items()]
+    direct, sweeps = large_rock_pile(found)
+    large = [[step, least(of_step).combination, *_cells(least(of_step)), *dataclasses.astuple(counts(of_step))]
+             for step, of_step in by_step(direct).items()]
     tables = [text.table(("rocks", "cfm", "solver", *times, "share"), piles),
-              text.table(("Large Rock Pile, step", "combination", *times, "least share", "measured"), large)]
+              text.table(("Large Rock Pile, step", "combination", *times, "least share", *COUNTED), large)]
+    if sweeps:
+        lines = [[share.step, share.solver, *_cells(share)] for share in sweeps]
+        tables.append(text.table(("Large Rock Pile, step", "solver", *times, "share"), lines))
     return "\n\n".join(filter(None, [*tables, far_in_words(found)]))
 
 

@@ -5,7 +5,7 @@ The program itself says them (cleave run ... --print-key).
 import json
 import subprocess
 
-from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.errors import ResultError, last_line
 
 BUILD = ("git_hash", "git_dirty", "flags", "build_type")
 MACHINE = ("cpu_model", "cores")
@@ -20,8 +20,7 @@ def build_key(program):
     except (OSError, ValueError) as error:
         raise ResultError(f"{program} --print-key does not work: {error}") from None
     if done.returncode != 0:
-        words = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        raise ResultError(f"{program} --print-key stopped with exit code {done.returncode}: {words}")
+        raise ResultError(f"{program} --print-key stopped with exit code {done.returncode}: {last_line(done.stderr)}")
     missing = [name for name in (*BUILD, *MACHINE) if not isinstance(key, dict) or name not in key]
     if missing:
         raise ResultError(f"{program} --print-key does not say {', '.join(missing)}; build it anew")

@@ -1,11 +1,14 @@
 """The one reader of command lines in scripts/: what is wrong is one line that names the option, the value and what is
 allowed, and exit code 1, before anything is written or made."""
 import argparse
-import difflib
+import pathlib
 import re
 
 from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.names import nearest
+from cleave_scripts.results.option_types import output_directory
 
+OUT = pathlib.Path(__file__).resolve().parents[3] / "out"  # where commands write, unless told otherwise
 # Words of argparse, and ours.
 WORDS = (
     (r"argument (\S+): ((?:is|has) .*)", r"\1 \2"),
@@ -18,12 +21,6 @@ WORDS = (
 def one_line(text):
     """Whatever a value or a file name holds: what is not printed is written out."""
     return "".join(sign if sign.isprintable() else sign.encode("unicode_escape", "backslashreplace").decode() for sign in text)
-
-
-def nearest(name, known):
-    """'; did you mean mindp?', where one of the known names is near."""
-    found = difflib.get_close_matches(name, list(map(str, known)), n=1)
-    return f"; did you mean {found[0]}?" if found else ""
 
 
 class CommandLine(argparse.ArgumentParser):
@@ -41,6 +38,10 @@ class CommandLine(argparse.ArgumentParser):
     def add_argument(self, *names, **options):
         self.names += [name for name in names if name.startswith("-")]
         return super().add_argument(*names, **options)
+
+    def add_out(self, name, words="(default %(default)s)"):
+        """--out DIR, by default the directory of that name in out/. words: of its help."""
+        return self.add_argument("--out", type=output_directory, default=str(OUT / name), metavar="DIR", help=words)
 
     def parse_args(self, args=None, namespace=None):
         options, rest = self.parse_known_args(args, namespace)

@@ -11,3 +11,8 @@ class AlreadyTold(Exception):
 
 class Interrupted(Exception):
     """Stopped by the user or from outside; the text says how to go on, if there is more to say than that."""
+
+
+def last_line(said, otherwise="no message"):
+    """Of what a program said, which then tells why it failed."""
+    return (said.strip().splitlines() or [otherwise])[-1]

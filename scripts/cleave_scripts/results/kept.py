@@ -28,15 +28,20 @@ class Journal:
 
     def keep_or_run(self, step, run, tell=lambda text: None):
         """The result of a step: the one that is noted, else that of run(step)."""
-        entry = self.finished.get(" ".join(step.arguments))
-        if entry:
+        kept = self.result_of(step)
+        if kept is not None:
             tell(f"{step.label} is kept")
-            return entry["result"]
+            return kept
         result = run(step)
-        self._add(step, result)
+        self.note(step, result)
         return result
 
-    def _add(self, step, result):
+    def result_of(self, step):
+        """The one that was noted last; None where there is none."""
+        entry = self.finished.get(" ".join(step.arguments))
+        return entry and entry["result"]
+
+    def note(self, step, result):
         entry = {"key": self.key, "arguments": " ".join(step.arguments), "result": result}
         self.path.parent.mkdir(parents=True, exist_ok=True)
         with self.path.open("a", encoding="utf-8") as file:

@@ -1,4 +1,5 @@
 """Names of algorithms as rows write them: 'mindp', with parameters 'mindp@max-bodies=50', with a hash 'file@1f2e3d4c'."""
+import difflib
 import functools
 import re
 
@@ -19,6 +20,12 @@ def said_parameters(text):
 def title(scene):
     """'Rock Pile' of 'rock_pile'."""
     return scene.replace("_", " ").title()
+
+
+def nearest(name, known):
+    """'; did you mean mindp?', where one of the known names is near."""
+    found = difflib.get_close_matches(name, list(map(str, known)), n=1)
+    return f"; did you mean {found[0]}?" if found else ""
 
 
 def in_order(names, first=()):

@@ -9,7 +9,7 @@ import pathlib
 import re
 import tempfile
 
-from cleave_scripts.results.command_line import nearest
+from cleave_scripts.results.names import nearest
 from cleave_scripts.results.whole_file import part_name
 
 MOST_COUNT = 999_999_999

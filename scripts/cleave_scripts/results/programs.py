@@ -7,8 +7,9 @@ import signal
 import subprocess
 import tempfile
 
+from cleave_scripts.results.build_key import build_key
 from cleave_scripts.results.command import say
-from cleave_scripts.results.errors import AlreadyTold, ResultError
+from cleave_scripts.results.errors import AlreadyTold, ResultError, last_line
 from cleave_scripts.results.steps import load_steps
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
@@ -66,7 +67,7 @@ def openblas_environment():
 
 
 def benchmark_beside(program, name):
-    """A program of tests/benchmarks of the same build."""
+    """A program of tests/benchmarks in the same build directory; load_benchmark says whether it is of the same build."""
     return program.parent / "tests" / name
 
 
@@ -82,8 +83,7 @@ def run_side_by_side(commands, allowed=(0,), **options):
         for process, said in running:
             if process.wait() not in allowed:
                 said.seek(0)
-                last = (said.read().strip().splitlines() or ["no message"])[-1]
-                raise ResultError(f"{' '.join(process.args[:2])} stopped with exit code {process.returncode}: {last}")
+                raise ResultError(f"{' '.join(process.args[:2])} stopped with exit code {process.returncode}: {last_line(said.read())}")
 
 
 @contextlib.contextmanager
@@ -153,9 +153,23 @@ def git(root, *arguments):
     return done.stdout.strip()
 
 
-def load_benchmark(path):
-    """The rows that Google Benchmark has written, less what it makes of the repetitions itself (mean, median, spread)."""
+def load_benchmark(path, program=None):
+    """The rows that Google Benchmark has written, less what it makes of the repetitions itself (mean, median, spread). What a benchmark of
+    another build than `program` has written is refused."""
     try:
-        return [row for row in json.loads(path.read_text(encoding="utf-8"))["benchmarks"] if row.get("run_type") != "aggregate"]
+        told = json.loads(path.read_text(encoding="utf-8"))
+        rows, context = [row for row in told["benchmarks"] if row.get("run_type") != "aggregate"], dict(told.get("context", {}))
     except (AttributeError, ValueError, KeyError, TypeError):
         raise ResultError(f"{path}: not written by a benchmark program") from None
+    if program is not None:
+        _refuse_other_build(context, program)
+    return rows
+
+
+def _refuse_other_build(context, program):
+    """context: what a benchmark says of itself (tests/benchmarks/build_context.h)."""
+    key = build_key(program)
+    mine, its = ([of.get(name, "unknown") for name in ("git_hash", "git_dirty")] for of in (key, context))
+    if mine != its:
+        builds = " and ".join(f"{commit[:10]} (local changes: {dirty})" for commit, dirty in (its, mine))
+        raise ResultError(f"{context.get('executable', 'the benchmark')} and {program} are builds of commits {builds}; build both anew")

@@ -28,6 +28,10 @@ def two_decimals(value):
     return "-" if math.isnan(value) else f"{value:.2f}"
 
 
+def holds(is_so):
+    return "holds" if is_so else "does not hold"
+
+
 def table(header, rows):
     lines = [header, ["---"] * len(header), *rows]
     return "\n".join("| " + " | ".join(map(str, line)) + " |" for line in lines)

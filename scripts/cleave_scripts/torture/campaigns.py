@@ -1,7 +1,7 @@
 """Campaigns of `cleave sweep` as material, and what has to hold of one that was disturbed and completed."""
 import csv
 
-from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.errors import ResultError, last_line
 from cleave_scripts.torture import child
 from cleave_scripts.torture.directories import LOCK, broken_files, experiment_rows, final_files
 from cleave_scripts.torture.endings import CHECK_FAILED, DONE, ROWS_FAILED
@@ -59,8 +59,7 @@ def _begin(directory, name, spec):
 def _run(program, directory, *words, allowed=(DONE, )):
     ending = child.finish(child.start([program, *words], directory), LONGEST_S)
     if ending.code not in allowed:
-        last = (ending.lines() or ["no message"])[-1]
-        raise ResultError(f"nothing to try: {words[0]} stopped with exit code {ending.code}: {last}")
+        raise ResultError(f"nothing to try: {words[0]} stopped with exit code {ending.code}: {last_line(ending.err)}")
 
 
 def check_left(trial, out):

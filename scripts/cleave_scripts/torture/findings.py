@@ -2,6 +2,7 @@
 import dataclasses
 import json
 import os
+import shlex
 import shutil
 import stat
 
@@ -9,10 +10,13 @@ MOST_KEPT = 3  # directories of equal findings; the others are counted, and thei
 MOST_BYTES = 20 << 20
 
 
+AGAIN = "again"  # where a finding is repeated: a run leaves nothing of what an earlier one has found in its directory
+
+
 class Keeper:
 
     def __init__(self, out):
-        self.lines, self.directory = out / "findings.jsonl", out / "findings"
+        self.out, self.lines, self.directory = out, out / "findings.jsonl", out / "findings"
         self.lines.unlink(missing_ok=True)
         shutil.rmtree(self.directory, ignore_errors=True)
         self.known = {}
@@ -32,7 +36,8 @@ class Keeper:
                     say(f"finding: {trial.kind} {trial.number}: {finding.what} ({self.directory / name})")
         if rare:
             (self.directory / name / "how.txt").write_text("\n".join([
-                f"scripts/torture --trials {trial.kind} --seed {trial.seed} --only {trial.number}", *trial.log,
+                f"scripts/torture --minutes 10 --trials {trial.kind} --seed {trial.seed} --only {trial.number} "
+                f"--out {shlex.quote(str(self.out.absolute() / AGAIN))}", *trial.log,
                 *(f"finding: {finding.what}\n{finding.detail}" for finding in trial.findings)]) + "\n", encoding="utf-8")
 
     def _is_rare(self, kind, what):

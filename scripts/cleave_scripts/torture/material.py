@@ -4,7 +4,7 @@ import functools
 import pathlib
 import time
 
-from cleave_scripts.results.errors import ResultError
+from cleave_scripts.results.errors import ResultError, last_line
 from cleave_scripts.torture import campaigns, child
 
 SECONDS = 600
@@ -78,6 +78,5 @@ class Material:
         begin = time.monotonic()
         ending = child.finish(child.start([self.program, *words, "--out", out], self.directory), SECONDS)
         if ending.code not in (0, 2):
-            last = (ending.lines() or ["no message"])[-1]
-            raise ResultError(f"nothing to try: {words[0]} stopped with exit code {ending.code}: {last}")
+            raise ResultError(f"nothing to try: {words[0]} stopped with exit code {ending.code}: {last_line(ending.err)}")
         return Undisturbed(words, out, time.monotonic() - begin)
