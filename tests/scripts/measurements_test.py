@@ -456,6 +456,17 @@ class PartitionWorthAnalysisTest(unittest.TestCase):
         self.assertEqual(self.fastest([9, 12, 9, 12]), ["monolithic", "schur-rows"])  # and no longer by the even ones
         self.assertEqual(self.fastest([8, 8, 8, 8], [7.9, 8.1, 7.9, 8.1], [9, 9, 9, 9]), ["schur-rows", "schur-bodies"])
 
+    def test_the_share_of_partitioning_is_of_the_papers_kernel_and_of_the_fastest(self):
+        mix = "mix@max-bodies=25"
+        with tempfile.TemporaryDirectory() as scratch:
+            root = pathlib.Path(scratch)
+            write_csv(root / "partition_worth.csv", whole_rows([10] * 4) + worth_rows("schur-rows", mix, [20, 20, 20, 90], t_pr_ms=0.1)
+                      + worth_rows("schur-bodies", mix, [4] * 4, t_pr_ms=0.1) + worth_rows("schur-nested", mix, [5] * 4, t_pr_ms=1)
+                      + worth_rows("schur-rows", "mix@max-bodies=50", [1] * 4, t_pr_ms=9))
+            made = worth.partition_share(Stored(root))
+        self.assertIn("| s, 9 bodies, 30 rows, cfm 1e-05 | - | 0.5 / 2.5 | - |", made)
+        self.assertIn("aimed at are 1 % and 5 %, which 1 and 1 of 1 cells keep", made)
+
     def test_what_is_not_decided_is_told_so(self):
         row = self.table_row(worth_rows("schur-bodies", "mix", [9, 9, 9, 10.1], model_ms=0.5))
         self.assertEqual(row[4], "undecided: schur-bodies or whole system")

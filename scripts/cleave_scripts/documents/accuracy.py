@@ -189,7 +189,8 @@ def iterative_partitions(stored):
                        for place, one in enumerate(columns) for other in columns[place + 1:] if one[0] == other[0] or one[1] == other[1])
     threads = "one thread where no other number is told" if threads_of(rows) else threads_in_words(())
     return (f"t_pr + t_s of a partition against the least of all partitions, geometric mean over steps of the scenes at cfm {float(parts_of.CFM):g}, "
-            f"{threads}; in brackets the same of sweeps. Solvers that iterate stop at {text.power(parts_of.LIMIT)} m/s (`{COMMAND}`; {stored.origin(PARTS[0])}):\n\n" +
+            f"{threads}; in brackets the same of sweeps. Solvers that iterate stop at {text.power(parts_of.LIMIT)} m/s "
+            f"(`{COMMAND}`; {stored.origin(PARTS[0])}):\n\n" +
             text.table(["", *map(_column_title, columns)], lines) +
             f"\n\n{_which_partition(compared)}{_in_parallel(rows, compared)}\n\nRank correlation of the partitions' times: {agreed}.")
 

@@ -1,4 +1,5 @@
 """What partitions are worth: which solver is fastest with its best partition, and what taking over parts from step to step saves."""
+import math
 import statistics
 
 from cleave_scripts.documents.stored import NoResults, need
@@ -37,7 +38,11 @@ def _worth_rows(stored, what, *columns):
 
 
 def _partition(cell):
-    return cell.partition.replace("@effort=best", ", best").replace("@split=", ", ").replace("@max-bodies=", ", ")
+    return _named(cell.partition)
+
+
+def _named(partition):
+    return partition.replace("@effort=best", ", best").replace("@split=", ", ").replace("@max-bodies=", ", ")
 
 
 def _parts(cell):
@@ -114,6 +119,31 @@ def semantic(stored):
             f"{_rule(rows)}:\n\n" + text.table(["", "kernel", *kinds, "fastest"], lines))
 
 
+def _shares(of_solver):
+    """t_pr over t_s by the paper's kernel, where it was tried, and by the fastest; of_solver: {solver: (share, time)}"""
+    paper = of_solver.get(partition_worth.PAPERS)
+    return paper[0] if paper else math.nan, min(of_solver.values(), key=lambda share_and_time: share_and_time[1])[0]
+
+
+def _of_hundred(share):
+    return "-" if math.isnan(share) else f"{100 * share:.1f}"
+
+
+def partition_share(stored):
+    """t_pr as a share of t_s, on every scene."""
+    rows = _worth_rows(stored, "the share of partitioning", "threads")
+    lines, told = [], []
+    for ((scene, bodies, cfm), count), of_problem in partition_worth.partition_shares(rows).items():
+        shares = {partition: _shares(of_solver) for partition, of_solver in of_problem.items()}
+        told += shares.values()
+        lines.append([f"{scene.replace('_', ' ')}, {bodies} bodies, {count} rows, cfm {float(cfm):g}",
+                      *(" / ".join(map(_of_hundred, shares[partition])) if partition in shares else "-" for partition in partition_worth.SHARED)])
+    held = [sum(share <= asked for share in of_side) for of_side, asked in zip(zip(*told), partition_worth.ASKED_SHARES)]
+    asked = " and ".join(f"{100 * share:.0f} %" for share in partition_worth.ASKED_SHARES)
+    return (f"t_pr as a share of t_s, %, one thread, with the paper's kernel / with the fastest one (`{WORTH[1]}`; {stored.origin(WORTH[0])}); aimed at are {asked}, which "
+            f"{held[0]} and {held[1]} of {len(told)} cells keep:\n\n" + text.table(["", *map(_named, partition_worth.SHARED)], lines))
+
+
 def regret_of_auto(stored):
     """auto against the best cell of its grid."""
     found = regret.regrets(need(stored.table(*REGRET), "auto", "replay"))
@@ -125,4 +155,4 @@ def regret_of_auto(stored):
             text.table(["", "best cell", "its time", regret.BASELINE, "auto", "regret", "auto chose", "holds"], lines))
 
 
-BLOCKS = {"over_time": over_time, "worth": worth, "semantic": semantic, "regret": regret_of_auto}
+BLOCKS = {"over_time": over_time, "worth": worth, "semantic": semantic, "partition_share": partition_share, "regret": regret_of_auto}

@@ -27,7 +27,7 @@ def draw(problems):
         ax.set_title(f"{scene.replace('_', ' ')}, {bodies} bodies\n{problem.rows} rows, cfm {float(cfm):g}", fontsize=7.5)
         ax.set(xscale="log", yscale="log", xlabel="workers", ylabel="speed-up")
         ax.set_xticks(WORKERS, list(map(str, WORKERS)))
-        ax.set_ylim(0.5, 8)
+        ax.set_ylim(0.5, 10)
         ax.set_yticks([0.5, 1, 2, 4, 8])
         ax.yaxis.set_minor_locator(style.matplotlib.ticker.NullLocator())
         ax.xaxis.set_minor_locator(style.matplotlib.ticker.NullLocator())

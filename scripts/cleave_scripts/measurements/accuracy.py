@@ -5,7 +5,6 @@ told to stop at each limit (`@until`), as far as it got: its sweeps for the next
 a limit the fastest counts. A direct solver has one time for all limits that its residual meets. Where no solve is within a limit the time
 is infinite: never. A solver that refuses a step, which has more rows than it takes, has not failed on it and is counted apart.
 """
-import collections
 import dataclasses
 import math
 

@@ -55,12 +55,12 @@ class Step:
 
 
 def has_waited(row):
-    """Too long for a core, so that t_s says more of the machine's other work."""
-    return float(row["t_s_waiting_ms"]) > MOST_WAITING * float(row["t_s_ms"])
+    """Too long for a core, a thread, so that t_s says more of the machine's other work."""
+    return float(row["t_s_waiting_ms"]) > MOST_WAITING * float(row["t_s_ms"]) * int(row["threads"])
 
 
 def waited_in_words(count):
-    return f"Solves that waited more than {100 * MOST_WAITING:.0f} % of t_s for a core are left out: {count}."
+    return f"Solves that waited more than {100 * MOST_WAITING:.0f} % of t_s a thread for a core are left out: {count}."
 
 
 def _step(key, one, two):

@@ -27,6 +27,10 @@ SEMANTIC = "semantic"
 WHOLE, RUNS, FOUND, UNCUT = "groups", "groups in runs", "found", "nothing cut"  # kinds of partitions
 WHOLE_SYSTEM = "auto:monolithic"
 ONE_PART = "single"  # a partitioner
+PAPERS = "auto:schur-rows"
+# Partitions of which the share of partitioning is told, and what was asked of it with PAPERS and with the fastest kernel.
+SHARED = ("mindp@max-bodies=25+fm", "mix@max-bodies=25+fm", "multilevel@effort=best@max-bodies=25+fm")
+ASKED_SHARES = (0.01, 0.05)
 NAMES = {"auto:schur-rows": "schur-rows, the paper's", "auto:schur-bodies": "schur-bodies", "auto:schur-nested": "schur-nested",
          WHOLE_SYSTEM: "whole system"}
 
@@ -158,6 +162,18 @@ def kinds(rows):
             of_kind = _best([cell for cell in cells if cell.solver == solver and cell.partition != NO_PARTITIONER], _kind)
             if of_kind:
                 found[key, count, solver] = of_kind
+    return found
+
+
+def partition_shares(rows):
+    """{(key, rows): {partition: {solver: (t_pr over t_s, t_pr + t_s)}}} on one thread, of SHARED; medians over the rounds."""
+    found = {}
+    for key, count, threads in _by_problem(rows):
+        of_problem = found[key, count] = {}
+        for (solver, partition), of_cell in _by_cell(threads[1]).items():
+            if partition in SHARED:
+                share = statistics.median(split_ms(row) / float(row["t_s_ms"]) for row, _ in of_cell)
+                of_problem.setdefault(partition, {})[solver] = share, statistics.median(total_ms(row) / pace for row, pace in of_cell)
     return found
 
 
