@@ -213,6 +213,7 @@ class IdleCostTest(Measurement):
         self.assertEqual(sum(call.startswith("replay") for call in self.calls()), 2 * 2 * 2)
         self.assertIn("large_rock_pile: 1.000 of the time", result.stdout)
         self.assertIn("chain_drop: 1.000 of the time", result.stdout)
+        self.assertIn("1.00 times as long as with threads that never sleep on large rock pile and 1.00 times", speed.idle_cost(self.stored()))
 
     def test_bad_input_is_one_line(self):
         self.assertIn("--rounds is '0', expected a whole number from 1", self.run_it("--rounds", 0, code=1).stderr)

@@ -66,7 +66,7 @@ class CheckoutTest(unittest.TestCase):
                    "large_scenes.csv": set(large_scenes.COLUMNS), "friction_cost.csv": set(friction_cost.COLUMNS),
                    "friction_bounds.csv": set(friction_bounds.COLUMNS),
                    "coulomb_peers.csv": set(coulomb_beside_siconos.COLUMNS), "partition_worth.csv": set(partition_worth.COLUMNS), "peer_times.csv": set(peer_times.COLUMNS)}
-        for command in ("two_threads", "modelled_workers", "busy_machine", "cold_starts", "karger", "partition_over_time", "ablation"):
+        for command in ("two_threads", "modelled_workers", "busy_machine", "idle_cost", "cold_starts", "karger", "partition_over_time", "ablation"):
             listed = re.search(r"^COLUMNS = \((.*?)\)", (SCRIPTS / command).read_text(), re.M | re.S)[1]
             written[f"{command}.csv"] = set(re.findall(r'"(\w+)"', listed))
         with open(ROOT / "results" / "report" / "verdicts.csv", encoding="utf-8") as file:

@@ -35,7 +35,7 @@ code = json.loads(os.environ.get("STAND_IN", "{}")).get(name, 0)
 out = pathlib.Path(arguments[arguments.index("--out") + 1] if "--out" in arguments else arguments[0] if arguments else ".")
 LEFT = {
     "ladder": ["ladder.csv"], "extremes": ["extremes.csv"], "benchmark_solvers": ["solver_benchmark.json"],
-    "benchmark_dense": ["dense_benchmark.json"], "busy_machine": ["busy_machine.csv"],
+    "benchmark_dense": ["dense_benchmark.json"], "busy_machine": ["busy_machine.csv"], "idle_cost": ["idle_cost.csv"],
     "benchmark_partitioners": ["partition_benchmark.json"], "two_threads": ["two_threads.csv"],
     "karger": ["karger.csv"], "partition_over_time": ["partition_over_time.csv"],
     "partition_worth": ["partition_worth.csv", "partition_worth.png"], "partition_regret": ["partition_regret.csv"],
@@ -126,7 +126,7 @@ class ReferenceTest(unittest.TestCase):
         self.assertEqual(self.results(), {
             "README.md", "torture/torture.json", "provenance.json", "extremes.csv", "solver_benchmark.json",
             "partition_benchmark.json",
-            "dense_benchmark.json", "busy_machine.csv",
+            "dense_benchmark.json", "busy_machine.csv", "idle_cost.csv",
             "two_threads.csv", "karger.csv", "partition_over_time.csv", "partition_worth.csv", "partition_worth.png", "partition_regret.csv", "tradeoff.csv", "tradeoff_partitions.csv",
             "tradeoff_motion.csv", "price_of_accuracy.png", "time_to_accuracy.png", "crossover.png", "accuracy_profile.png", "tradeoff_motion.png", "model_savings.csv", "campaign_costs.csv", "friction_cost.csv", "friction_motion.csv", "friction_velocities.csv", "friction_bounds.csv", "coulomb_peers.csv", "peer_times.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
             "verdict_map.png", "modelled_workers.csv", "running_simulation.csv", "large_scenes.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",

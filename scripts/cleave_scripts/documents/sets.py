@@ -82,6 +82,7 @@ SETS = {
         "the dense Cholesky factorisation against the processor's peak and OpenBLAS",
         "scripts/benchmark_dense"),
     "busy_machine.csv": ("a step on two threads while other programs keep the cores busy", "scripts/busy_machine"),
+    "idle_cost.csv": ("steps on two threads of an idle machine, with threads that go to sleep and with threads that never do", "scripts/idle_cost"),
     "partition_benchmark.json": (
         "partitioners and refiners, METIS and SCOTCH among them, on recorded steps and synthetic piles",
         "scripts/benchmark_partitioners"),

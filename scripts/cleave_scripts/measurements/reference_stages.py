@@ -34,6 +34,7 @@ STAGES = (
     Stage("dense_benchmark", ("benchmark_dense", "--out", "{out}"), 3,
           files=(("dense_benchmark.json", "dense_benchmark.json"),)),
     Stage("busy_machine", ("busy_machine", "--out", "{out}"), 1, files=(("busy_machine.csv", "busy_machine.csv"),)),
+    Stage("idle_cost", ("idle_cost", "--out", "{out}"), 1, files=(("idle_cost.csv", "idle_cost.csv"),)),
     Stage("partition_benchmark", ("benchmark_partitioners", "--out", "{out}"), 15,
           files=(("partition_benchmark.json", "partition_benchmark.json"),)),
     Stage("karger", ("karger", "--out", "{out}"), 2, files=(("karger.csv", "karger.csv"),)),

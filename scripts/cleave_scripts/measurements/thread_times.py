@@ -168,3 +168,11 @@ def lines_of_shares(found):
 def by_load(rows):
     """{busy loops: t_s in ms}, fewest loops first"""
     return {int(loops): time for (loops,), time in sorted(_medians(rows, "busy_loops").items())}
+
+
+def sleeping_over_awake(rows):
+    """{scene: t_s with threads that go to sleep over t_s with threads that never do}, medians over the rounds of scripts/idle_cost"""
+    ratios = {}
+    for row in rows:
+        ratios.setdefault(row["scene"], []).append(float(row["t_s_ms"]) / float(row["awake_t_s_ms"]))
+    return {scene: statistics.median(of_scene) for scene, of_scene in ratios.items()}
