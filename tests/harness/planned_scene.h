@@ -2,9 +2,6 @@
 // steps them: named by options of the command line, or drawn at random.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -12,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/base/larger_or_nan.h"
+#include "harness/base/value_spans.h"
 #include "harness/experiment/options.h"
 #include "scenarios/scene.h"
 #include "solver/residual.h"
@@ -57,14 +54,6 @@ inline std::vector<int> one_part(const StepProblem& problem) {
 // exact answer may miss.
 inline double same_velocity_m_per_s(bool is_fast, const ResidualReport& report) {
   return is_fast ? report.limit_m_per_s : kExactLimit;
-}
-
-// NaN where there is one, which must not compare as small.
-inline double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
-  EXPECT_EQ(a.size(), b.size());
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = larger_or_nan(most, std::abs(a[i] - b[i]));
-  return most;
 }
 
 }  // namespace cleave

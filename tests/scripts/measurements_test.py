@@ -120,7 +120,7 @@ class ModelledWorkersTest(Measurement):
         self.assertEqual({solvers for solvers, *_ in told[::2]}, {"exact,schur,pivot:schur-bodies,pivot:schur-nested"})
         self.assertEqual({solvers for solvers, *_ in told[1::2]}, {"exact,pivot:schur-nested"})
         self.assertEqual([rest.partition(" --out")[0] for *_, rest in told],
-                         [f"{repeats} --threads {threads}" for threads in (1, 2, 2, 1, 1, 2) for repeats in (3, 1)])
+                         [f"{repeats} --threads {threads}" for threads in (1, 2, 2, 1, 1, 2) for repeats in (3, 3)])
         rows = self.rows("modelled_workers.csv")
         self.assertEqual(len(rows), 3 * 2 * self.cells)
         self.assertEqual({(row["task_us"], row["stage_us"]) for row in rows}, {("0.2", "1.5")})
