@@ -1,7 +1,6 @@
 #include "solver/block_matrix.h"
 
 #include <algorithm>
-#include <atomic>
 #include <numeric>
 #include <utility>
 
@@ -188,19 +187,6 @@ void BlockMatrix::assemble(const WeightedRows& rows, int branch) {
     add_block(panels + entry.ab.offset, entry.ab.leading_dimension, gram + 6, 12, entry.ab.transposed);
     if (entry.late >= 0)
       copy_block(gram + (entry.a_is_late ? 0 : 78), late_blocks_.data() + 36L * entry.late);
-  }
-}
-
-void BlockMatrix::take_weights(std::span<const double> d, const Chunk& groups, std::span<double> kept,
-                               std::span<char> changed) const {
-  for (int g = groups.first; g < groups.last; ++g) {
-    const RowGroup& group = step_->groups()[g];
-    bool any = false;
-    for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
-      any |= kept[r] != d[r];
-      kept[r] = d[r];
-    }
-    if (any) std::atomic_ref(changed[group_branch_[g]]).store(1, std::memory_order_relaxed);
   }
 }
 

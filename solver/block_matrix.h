@@ -48,10 +48,8 @@ class BlockMatrix {
 
   // rows: of the whole problem, with their D.
   void assemble(const WeightedRows& rows, int branch);
-  // Of a whole step: d (m) of the rows of these groups into `kept`; sets changed[branch], of the branch that
-  // assembles it, where one is another than was kept before.
-  void take_weights(std::span<const double> d, const Chunk& groups, std::span<double> kept,
-                    std::span<char> changed) const;
+  // Which one assembles it, of a whole step.
+  int branch_of_group(int group) const { return group_branch_[group]; }
   // After assembly of this branch and factorisation of the child branches. False when a pivot is not
   // positive.
   bool factor(int branch);

@@ -1,16 +1,15 @@
 #include "solver/kernels/branch_kernel.h"
 
 #include <algorithm>
-#include <utility>
+#include <atomic>
 
 namespace cleave {
 
 void BranchKernel::bind(const PreparedStep& step) {
   step_ = &step;
-  changed_all_ = true;
+  kept_.bind(step);
   system_.bind(step, matrix_.cholesky().symbolic().position_of_node());
   x_.resize(6 * static_cast<std::size_t>(step.body_count()));
-  factored_weights_.resize(step.row_count());
 }
 
 void BranchKernel::choose_separators(const PreparedStep& step, const Parts& parts, Stages& stages) {
@@ -71,18 +70,15 @@ void BranchKernel::list_tasks(int threads) {
   substitution_.join(symbolic, threads);
 }
 
-// With the rows that the weights turn, in one pass. Rows in blocks are turned by their bases too, so that
-// equal weights do not say that nothing has changed.
+// With the rows that the weights turn, in one pass.
 void BranchKernel::find_changed(const RowWeights& weights, const RowWork& before, ParallelTasks& tasks) {
-  const long preparation = step_->preparations();
-  const bool is_new = std::exchange(factored_preparation_, preparation) != preparation;
-  const bool all =
-      std::exchange(changed_all_, true) || is_new;  // true until this factorisation has succeeded
-  std::ranges::fill(changed_, all);
+  std::ranges::fill(changed_, kept_.begin(weights));
   tasks.run_over(step_->group_chunks(), [&](const Chunk& groups) {
     step_->do_rows(before, groups);
     system_.turn(groups);
-    matrix_.take_weights(weights.d, groups, factored_weights_, changed_);
+    for (int g = groups.first; g < groups.last; ++g)
+      if (kept_.take(step_->groups()[g], weights.d))
+        std::atomic_ref(changed_[matrix_.branch_of_group(g)]).store(1, std::memory_order_relaxed);
   });
   const auto branches = matrix_.cholesky().symbolic().branches();
   for (std::size_t b = 0; b < branches.size(); ++b)
@@ -100,7 +96,7 @@ bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks, const
   local_tasks_.run(Stage::factor_local, rows, matrix_, changed_, factored_, tasks);
   interface_tasks_.run(Stage::factor_interface, rows, matrix_, changed_, factored_, tasks);
   const bool succeeded = std::ranges::find(factored_, 0) == factored_.end();
-  changed_all_ = !succeeded || !weights.blocks.empty();
+  kept_.end(succeeded, weights);
   return succeeded;
 }
 

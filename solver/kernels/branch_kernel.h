@@ -21,6 +21,7 @@
 #include "solver/body_system.h"
 #include "solver/branch_groups.h"
 #include "solver/factor_tasks.h"
+#include "solver/kept_weights.h"
 #include "solver/kernels/kernel.h"
 #include "solver/separators.h"
 
@@ -69,10 +70,7 @@ class BranchKernel : public Kernel {
   int interface_bodies_ = 0;
   FactorTasks local_tasks_, interface_tasks_;
   BranchGroups substitution_;
-  // The last factorisation failed, is not one of this analysis, or had rows turned by blocks.
-  bool changed_all_ = true;
-  long factored_preparation_ = 0;         // of the step
-  std::vector<double> factored_weights_;  // (m)
+  KeptWeights kept_;
   std::vector<char> changed_, factored_;  // by branch
   std::vector<double> x_;                 // (n, 6) by position
 };

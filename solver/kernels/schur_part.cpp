@@ -51,21 +51,9 @@ void SchurPart::count_right_hand_sides(const PartRows& rows, MemoryCount& memory
   memory.add<int>(3, rows.bodies.size() + 1);  // at most a supernode a body
 }
 
-bool SchurPart::take_weights(std::span<const double> d, std::span<double> kept) const {
-  bool any = false;
-  for (const int g : part_rows().groups) {
-    const RowGroup& group = step_->groups()[g];
-    for (int r = group.first_row; r < group.first_row + group.row_count; ++r) {
-      any |= kept[r] != d[r];
-      kept[r] = d[r];
-    }
-  }
-  return any;
-}
-
-void SchurPart::assemble(const WeightedRows& rows, bool all, std::span<double> kept_weights) {
-  const bool changed = take_weights(rows.d(), kept_weights);
-  is_remade_ = all || changed;
+void SchurPart::assemble(const WeightedRows& rows, bool all, KeptWeights& kept) {
+  is_remade_ = all;
+  for (const int g : part_rows().groups) is_remade_ |= kept.take(step_->groups()[g], rows.d());
   if (is_remade_) matrix_.assemble(rows);
 }
 

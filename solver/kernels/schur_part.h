@@ -16,6 +16,7 @@
 
 #include "solver/block_matrix.h"
 #include "solver/interface_split.h"
+#include "solver/kept_weights.h"
 #include "solver/memory_count.h"
 #include "solver/row_weights.h"
 
@@ -35,8 +36,8 @@ class SchurPart {
   void allocate() { matrix_.allocate(); }
 
   // all: nothing of the last factorisation stands. Else the part is made anew where a weight inside it is not
-  // the one in kept_weights (m), which takes over those of its rows.
-  void assemble(const WeightedRows& rows, bool all, std::span<double> kept_weights);
+  // the one that was kept.
+  void assemble(const WeightedRows& rows, bool all, KeptWeights& kept);
   void factor() {
     if (is_remade_) factored_ = matrix_.factor();
   }
@@ -65,7 +66,6 @@ class SchurPart {
   const PartRows& part_rows() const { return split_->parts[index_]; }
   int row_of(int entry) const { return split_->cut_rows[part_rows().cut_rows[entry]]; }
   void bind(const PreparedStep& step, const InterfaceSplit& split, int index);
-  bool take_weights(std::span<const double> d, std::span<double> kept) const;
   int position_of(int entry) const;
   int supernode_of(int entry) const;
   void order_cut_rows();

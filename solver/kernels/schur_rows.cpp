@@ -12,7 +12,6 @@
 // Strategies that end near the solution change few weights from one factorisation to the next. Parts without
 // a changed row, and what they leave to the interface, stand as they are; S has the bytes of a whole one.
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "solver/interface_split.h"
@@ -40,7 +39,6 @@ class SchurRowsKernel : public Kernel {
   void split(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks);
   void count_interface(MemoryCount& memory) const;
   void allocate(ParallelTasks& tasks);
-  bool nothing_stands();
   void assemble(const RowWeights& weights, ParallelTasks& tasks);
   bool factor_parts(ParallelTasks& tasks);
   void form_interface(ParallelTasks& tasks);
@@ -50,10 +48,7 @@ class SchurRowsKernel : public Kernel {
   void solve_interface(std::span<const double> f_r, std::span<double> dlambda);
 
   const PreparedStep* step_ = nullptr;
-  // The last factorisation failed, is not one of this analysis, or had rows turned by blocks.
-  bool changed_all_ = true;
-  long factored_preparation_ = 0;         // of the step
-  std::vector<double> factored_weights_;  // (m)
+  KeptWeights kept_;
   WeightedRows rows_;
   InterfaceSplit split_;
   std::vector<SchurPart> parts_;     // (at least split_.part_count)
@@ -66,7 +61,6 @@ class SchurRowsKernel : public Kernel {
 void SchurRowsKernel::split(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
   step_ = &step;
-  changed_all_ = true;
   split_.split(step, parts.part_of_body);
   // An interface that is too large is known before anything of the parts is.
   MemoryCount memory;
@@ -104,7 +98,7 @@ void SchurRowsKernel::allocate(ParallelTasks& tasks) {
     analyzed_all &= parts_[i].is_analyzed();
   }
   tasks.memory().request(memory, analyzed_all);
-  factored_weights_.resize(step_->row_count());
+  kept_.bind(*step_);
   tasks.run(Stage::analyze, split_.part_count, [&](int i) { parts_[i].allocate(); });
 }
 
@@ -129,16 +123,9 @@ bool SchurRowsKernel::factor(const RowWeights& weights, ParallelTasks& tasks, co
   assemble(weights, tasks);
   if (!factor_parts(tasks)) return false;
   form_interface(tasks);
-  if (!interface_.factor(tasks)) return false;
-  changed_all_ = !weights.blocks.empty();
-  return true;
-}
-
-// Rows in blocks are turned by their bases too, so that equal weights do not say that nothing has changed.
-bool SchurRowsKernel::nothing_stands() {
-  const long preparation = step_->preparations();
-  const bool is_new = std::exchange(factored_preparation_, preparation) != preparation;
-  return std::exchange(changed_all_, true) || is_new;  // true until this factorisation has succeeded
+  const bool succeeded = interface_.factor(tasks);
+  kept_.end(succeeded, weights);
+  return succeeded;
 }
 
 void SchurRowsKernel::assemble(const RowWeights& weights, ParallelTasks& tasks) {
@@ -146,8 +133,8 @@ void SchurRowsKernel::assemble(const RowWeights& weights, ParallelTasks& tasks) 
   rows_.set(step_->problem(), weights);
   if (!weights.blocks.empty())
     tasks.run_over(step_->group_chunks(), [&](const Chunk& groups) { rows_.turn(step_->rows_of(groups)); });
-  const bool all = nothing_stands() || !weights.blocks.empty();
-  tasks.run(split_.part_count, [&](int i) { parts_[i].assemble(rows_, all, factored_weights_); });
+  const bool all = kept_.begin(weights);
+  tasks.run(split_.part_count, [&](int i) { parts_[i].assemble(rows_, all, kept_); });
 }
 
 // False when a pivot is not positive.

@@ -120,6 +120,14 @@ TEST_P(KeptBranchesTest, AreNoneOfAnotherStepOrAnotherBasis) {
   EXPECT_NEAR(factor_and_compare(), 1, 1e-9);
 }
 
+// The weights are the same numbers, but no longer along the rows.
+TEST_P(KeptBranchesTest, AreNoneOfTheFirstBasis) {
+  factor_and_compare();
+  std::vector<WeightBlock> blocks(1);
+  blocks[0].basis = {0, 1, 0, 1, 0, 0, 0, 0, 1};
+  EXPECT_NEAR(factor_and_compare(blocks), 1, 1e-9);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kernels, KeptBranchesTest, testing::ValuesIn(names_of_kernels_that_keep()),
                          [](const auto& info) {
                            std::string name = info.param;

@@ -112,23 +112,26 @@ class CarriedFactorTest : public testing::Test {
     dv_ = f_v_;
     dlambda_ = f_r_;
   }
-  // Factors, goes to the next step, and solves with the factor that was carried there.
-  CarriedFactor::Counts solve_carried(std::unique_ptr<Kernel> kernel, double weight_then) {
-    CarriedFactor carried(std::move(kernel));
-    const std::vector<int> parts = single_part(problem_.body_count());
+  // Factors, goes to the next step, and takes the factor along.
+  void carry(CarriedFactor& carried, double weight_then) {
     carried.begin_step(0);
-    carried.analyze(step_, parts, tasks_);
+    carried.analyze(step_, parts_, tasks_);
     EXPECT_TRUE(carried.factor(d_, tasks_));
     carried.begin_step(0);
-    EXPECT_TRUE(carried.rebind(step_, parts, tasks_));
+    EXPECT_TRUE(carried.rebind(step_, parts_, tasks_));
     d_.assign(d_.size(), weight_then);
     EXPECT_TRUE(carried.factor(d_, tasks_));
     EXPECT_EQ(carried.counts().factorizations, 0) << "not carried";
+  }
+  CarriedFactor::Counts solve_carried(std::unique_ptr<Kernel> kernel, double weight_then) {
+    CarriedFactor carried(std::move(kernel));
+    carry(carried, weight_then);
     carried.solve(f_v_, f_r_, dv_, dlambda_, tasks_);
     return carried.counts();
   }
 
   StepProblem problem_;
+  const std::vector<int> parts_ = single_part(problem_.body_count());
   StageClock clock_;
   ParallelTasks tasks_;
   PreparedStep step_;
@@ -182,13 +185,7 @@ class Unfactorable : public Dear {
 // What is left of a factorisation that failed hangs on which of its tasks ran: nothing is made of it.
 TEST_F(CarriedFactorTest, LeavesNoIncrementWhereItCannotBeMadeAnew) {
   CarriedFactor carried(std::make_unique<Unfactorable>());
-  const std::vector<int> parts = single_part(problem_.body_count());
-  carried.begin_step(0);
-  carried.analyze(step_, parts, tasks_);
-  EXPECT_TRUE(carried.factor(d_, tasks_));
-  carried.begin_step(0);
-  EXPECT_TRUE(carried.rebind(step_, parts, tasks_));
-  EXPECT_TRUE(carried.factor(d_, tasks_));
+  carry(carried, d_[0]);
   for (int solve = 0; solve < 2; ++solve) {
     carried.solve(f_v_, f_r_, dv_, dlambda_, tasks_);
     EXPECT_EQ(dv_, std::vector<double>(dv_.size(), 0.0));

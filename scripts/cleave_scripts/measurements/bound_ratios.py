@@ -2,6 +2,7 @@
 import dataclasses
 
 from cleave_scripts.measurements.friction_bounds import CONVERGED, DEFAULT_SWEEPS, FROZEN
+from cleave_scripts.results.command_line import counted
 from cleave_scripts.table import text
 
 HALF, CHEAP = 0.5, 0.05  # of the mismatch with DEFAULT_SWEEPS; of t_s: at most
@@ -43,7 +44,7 @@ def _of_scene(scene, rows):
 
 
 def _sweeps(count):
-    return f"{count} sweep{'s' * (count != 1)}"
+    return counted(count, "sweep")
 
 
 def _line(bounds):

@@ -6,6 +6,7 @@ import pathlib
 import statistics
 
 from cleave_scripts.results.programs import record, replay
+from cleave_scripts.results.rows import group
 from cleave_scripts.table import text
 
 ROCKS = (30, 80, 200)
@@ -78,16 +79,9 @@ def _time_ms(row):
     return 1000 * float(row["peer_timeout_s"]) if row["status"] == "timeout" else float(row["t_s_ms"])
 
 
-def _by(rows, *columns):
-    found = {}
-    for row in rows:
-        found.setdefault(tuple(row[column] for column in columns), []).append(row)
-    return found
-
-
 def _step_ms(rows):
     """{step: median over the rounds}"""
-    return {step: statistics.median(map(_time_ms, of_step)) for (step,), of_step in _by(rows, "step").items()}
+    return {step: statistics.median(map(_time_ms, of_step)) for (step,), of_step in group(rows, "step").items()}
 
 
 def _median(values):
@@ -95,7 +89,7 @@ def _median(values):
 
 
 def _price(rows, ours_ms):
-    firsts = [of_step[0] for of_step in _by(rows, "step").values()]
+    firsts = [of_step[0] for of_step in group(rows, "step").values()]
     times_ms = {step: ms for step, ms in _step_ms(rows).items() if not math.isnan(ms)}
     residuals = [float(row["residual_m_per_s"]) for row in firsts]
     return Price(rows=statistics.median(float(row["rows"]) for row in firsts), t_s_ms=_median(times_ms.values()),
@@ -108,8 +102,8 @@ def _price(rows, ours_ms):
 def prices(rows):
     """{rocks: {solver: Price}}, the smallest pile first."""
     found = {}
-    for (bodies,), of_pile in sorted(_by(rows, "bodies").items(), key=lambda item: int(item[0][0])):
-        by_solver = {solver: of_solver for (solver,), of_solver in _by(of_pile, "solver").items()}
+    for (bodies,), of_pile in sorted(group(rows, "bodies").items(), key=lambda item: int(item[0][0])):
+        by_solver = {solver: of_solver for (solver,), of_solver in group(of_pile, "solver").items()}
         ours_ms = _step_ms(by_solver[OURS])
         found[int(bodies)] = {solver: _price(of_solver, ours_ms) for solver, of_solver in by_solver.items()}
     return found

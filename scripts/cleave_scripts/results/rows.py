@@ -2,6 +2,14 @@
 from cleave_scripts.results.names import NO_PARTITIONER
 
 
+def group(rows, *columns):
+    """{values of the columns: rows}"""
+    groups = {}
+    for row in rows:
+        groups.setdefault(tuple(row[column] for column in columns), []).append(row)
+    return groups
+
+
 def has_parts(row):
     return row["partitioner"] != NO_PARTITIONER
 

@@ -4,6 +4,7 @@ import statistics
 
 from cleave_scripts.results.names import base_name
 from cleave_scripts.results.paper import COMBINATIONS, PAPER, load_paper_table1
+from cleave_scripts.results.rows import group
 from cleave_scripts.results.steps import EXACT_LIMIT
 
 SPREAD_LIMIT_M_PER_S = 1e-8
@@ -146,13 +147,6 @@ def slow_partitions(rows, _):
         if key in paper and not mean < paper[key][1]:
             errors.append(f"{' '.join(key)}: {mean:.3f} ms, the paper's {paper[key][1]} ms")
     return errors
-
-
-def group(rows, *columns):
-    groups = {}
-    for row in rows:
-        groups.setdefault(tuple(row[column] for column in columns), []).append(row)
-    return groups
 
 
 ROW_CRITERIA = (
