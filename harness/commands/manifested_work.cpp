@@ -29,6 +29,7 @@ int do_manifested_work(const RunOptions& options, const WorkDescription& descrip
   // Someone else may have finished there between the check and the lock.
   check_files_absent(options.out, options.force, description.files);
   if (options.force) remove_earlier_work(directory);
+  for (const std::string& line : options.notes) say(line);  // a refusal is one line alone
   stop_on_signals();
   RunSummary summary;
   Manifest manifest(directory / kManifestFile, description);
@@ -56,10 +57,6 @@ WorkDescription describe_work(const std::string& command, const std::vector<std:
           .files = files,
           .libraries = {{"ode", ode_version()}},
           .memory_limit_gb = 1e-9 * static_cast<double>(options.memory_limit_bytes)};
-}
-
-void print_notes(const RunOptions& options) {
-  for (const std::string& line : options.notes) say(line);
 }
 
 }  // namespace cleave

@@ -26,7 +26,4 @@ WorkDescription describe_work(const std::string& command, const std::vector<std:
                               const RunOptions& options, const std::vector<OptionValue>& values,
                               const std::vector<std::string>& files);
 
-// Says what keywords such as `all` left out.
-void print_notes(const RunOptions& options);
-
 }  // namespace cleave

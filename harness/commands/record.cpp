@@ -1,6 +1,7 @@
 // cleave record: simulates and writes the problem of chosen steps, one file each.
 #include <limits>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 #include "harness/base/numbers.h"
@@ -40,11 +41,13 @@ RunOptions parse_record_options(const Given& typed) {
   if (at.empty()) throw std::invalid_argument("--at: is required: the steps to record, such as 100,200,300");
   // One solver and one way to split: what no part of them has is refused as in any run.
   Given one = all.given;
-  one.emplace("partitioner", default_run_options().partitioners.front().text);
-  one.emplace("refiner", default_run_options().refiners.front().text);
+  std::set<std::string> not_typed = all.stored;
+  if (one.emplace("partitioner", default_run_options().partitioners.front().text).second)
+    not_typed.insert("partitioner");
+  if (one.emplace("refiner", default_run_options().refiners.front().text).second) not_typed.insert("refiner");
   if (one.contains("advance")) read_named("advance", one["advance"]);  // errors name what was given
   one["solver"] = one.contains("advance") ? one["advance"] : default_run_options().advance.text;
-  RunOptions options = parse_run_options(one, all.stored);
+  RunOptions options = parse_run_options(one, not_typed);
   check_parts_wanted(all, options);
   keep_one(all.given, "partitioner", options.partitioners);
   keep_one(all.given, "refiner", options.refiners);

@@ -235,7 +235,6 @@ int replay(ReplayOptions options, const std::vector<std::string>& argv) {
   if (options.write_solutions) check_copies_differ(options);
   check_not_taken_away(options);
   check_run_directory(options.solve.out, options.solve.force, files_written(options));
-  print_notes(options.solve);
   Replay work(options);
   return do_manifested_work(
       options.solve, describe_work("replay", argv, options.solve, values_of(options), files_written(options)),

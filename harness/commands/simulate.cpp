@@ -30,7 +30,6 @@ void tell_findings(const std::filesystem::path& out, const std::vector<ModelFind
 int simulate(const std::string& command, const std::vector<std::string>& argv, const RunOptions& options,
              const std::vector<std::string>& files, Simulation::Observer observe) {
   check_run_directory(options.out, options.force, files);
-  print_notes(options);
   std::optional<MotionRecorder> motion;
   if (options.record_motion) motion.emplace(std::filesystem::path(options.out) / kMotionFile, options);
   std::optional<ModelWatch> watch;

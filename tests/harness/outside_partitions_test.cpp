@@ -333,5 +333,21 @@ TEST_F(OutsidePartitions, PartsThatNobodyReadsAreTold) {
   EXPECT_EQ(both.err.find(told), std::string::npos) << both.err;
 }
 
+// A refusal is one line alone, also where it comes when the directory is made.
+TEST_F(OutsidePartitions, NothingIsToldOfPartsBeforeARefusal) {
+  const ProgramResult refused = run_cleave({"run", "--scene", "rock_pile", "--steps", "1", "--solver",
+                                            "exact", "--refiner", "none", "--out", "/proc/no/directory"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_EQ(std::ranges::count(refused.err, '\n'), 1) << refused.err;
+}
+
+// Its partitioner is for the solver of --advance, and one that was not named is not idle.
+TEST_F(OutsidePartitions, RecordTellsOfPartsThatWereNamedAlone) {
+  const ProgramResult recorded = run_cleave(
+      {"record", "--scene", "rock_pile", "--bodies", "3", "--at", "0", "--out", *this / "recorded"});
+  EXPECT_EQ(recorded.exit_code, 0) << recorded.err;
+  EXPECT_EQ(recorded.err.find("change nothing"), std::string::npos) << recorded.err;
+}
+
 }  // namespace
 }  // namespace cleave

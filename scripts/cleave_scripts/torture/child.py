@@ -6,6 +6,8 @@ import signal
 import subprocess
 import time
 
+from cleave_scripts.torture.signals import held, let_through
+
 NICE = 5
 MOST_KEPT = 1 << 20  # characters of what a child prints
 
@@ -34,11 +36,13 @@ def in_shell(command, memory_mb, streams):
 
 def start(command, directory, memory_mb=None, streams=""):
     """streams: redirections as the shell writes them, such as 2>&-"""
-    return subprocess.Popen(in_shell(list(map(str, command)), memory_mb, streams), cwd=directory, stdin=subprocess.DEVNULL,
-                            stdout=subprocess.PIPE, stderr=subprocess.PIPE, process_group=0, preexec_fn=_be_modest)
+    with held():
+        return subprocess.Popen(in_shell(list(map(str, command)), memory_mb, streams), cwd=directory, stdin=subprocess.DEVNULL,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, process_group=0, preexec_fn=_be_modest)
 
 
 def _be_modest():
+    let_through()
     os.setpriority(os.PRIO_PROCESS, 0, max(NICE, os.getpriority(os.PRIO_PROCESS, 0)))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 

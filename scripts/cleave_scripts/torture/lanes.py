@@ -5,9 +5,9 @@ import os
 import signal
 
 from cleave_scripts.results.errors import ResultError
+from cleave_scripts.torture.signals import held, let_through
 from cleave_scripts.torture.tally import Tally
 
-SIGNALS = signal.SIGINT, signal.SIGTERM
 FORK = multiprocessing.get_context("fork")
 AGAIN_S = 1  # an interrupt is told again
 
@@ -19,16 +19,17 @@ class Lanes:
     def __init__(self, count, make):
         self.make, self.tallies, self.pipes, self.interrupted = make, [Tally() for _ in range(count)], {}, False
         self.parent = os.getpid()
-        # No signal is lost or taken twice while lanes begin: one that has no handler yet would be killed or never told.
-        signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
-        for lane in range(count):
-            ours, theirs = FORK.Pipe(duplex=False)
-            process = FORK.Process(target=self._run, args=(lane, theirs))
-            process.start()
-            theirs.close()
-            self.pipes[ours] = lane, process
-        self.before = signal.signal(signal.SIGINT, self._interrupt)
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+        with held():  # one that has no handler yet would be killed or never told
+            for lane in range(count):
+                self._start(lane)
+            self.before = signal.signal(signal.SIGINT, self._interrupt)
+
+    def _start(self, lane):
+        ours, theirs = FORK.Pipe(duplex=False)
+        process = FORK.Process(target=self._run, args=(lane, theirs))
+        process.start()
+        theirs.close()
+        self.pipes[ours] = lane, process
 
     def watch(self, tell):
         """tell(text, tally of all lanes) until the last lane has ended. Whether it was interrupted since the lanes began."""
@@ -64,8 +65,7 @@ class Lanes:
 
     def _run(self, lane, pipe):
         """A terminal interrupts all its processes; lanes are told by SIGTERM, of which the first counts. Programs under trial must
-        not inherit a signal that is ignored, so it is caught. Python drops what is raised in its hooks at a fork: then the lane
-        ends with the trial."""
+        not inherit a signal that is ignored, so it is caught."""
         signal.signal(signal.SIGINT, lambda *_: None)
         signal.signal(signal.SIGTERM, self._end)
         tally = Tally()
@@ -76,7 +76,7 @@ class Lanes:
             pipe.send((text, tally))
 
         try:
-            signal.pthread_sigmask(signal.SIG_UNBLOCK, SIGNALS)
+            let_through()
             self.make(lane, tally, tell)
             tell("")
             signal.signal(signal.SIGTERM, lambda *_: None)  # which may still be on its way

@@ -9,6 +9,7 @@ from cleave_scripts.torture import child
 from cleave_scripts.torture.endings import fault
 from cleave_scripts.torture.guarded import Unreadable, guarded
 from cleave_scripts.torture.judge import judge_file
+from cleave_scripts.torture.signals import held
 
 SIGNS = 2000  # of what a program printed, in a finding
 
@@ -43,7 +44,8 @@ class Trial:
         limit = f"ulimit -v {memory_mb * 1024}; " if memory_mb else ""
         self.note(f"$ {limit}{shlex.join(['cleave', *map(str, words)])} {streams}".rstrip())
         self.count("programs")
-        self.started.append(child.start([self.program, *words], self.directory, memory_mb, streams))
+        with held():  # until it is noted
+            self.started.append(child.start([self.program, *words], self.directory, memory_mb, streams))
         return self.started[-1]
 
     def end(self):
