@@ -81,7 +81,8 @@ class MisbehavingTest(TortureCase):
             self.assertIn(words, " ".join(result["kinds"][kind]["found"]), (misbehaviour, kind))
 
     def test_crashes(self):
-        self.check("crash", {kind.name: LOST[0] for kind in KINDS if kind.name not in ("kills", "interrupts", "full-disk", "campaign-kills")})
+        self.check("crash", {kind.name: LOST[0] for kind in KINDS
+                             if kind.name not in ("kills", "interrupts", "full-disk", "campaign-kills")})
 
     def test_hangs(self):
         self.check("hang", dict.fromkeys(("problem-files", "low-memory", "random-runs"), "hangs"), "--patience", 1, count=1)

@@ -63,8 +63,8 @@ class ScenesTest(unittest.TestCase):
                           for partitioner in set(names("partitioners")) - left_out})
         solvers = names("solvers") + [f"{strategy}:{kernel}" for strategy in ("pivot", "interior-point")
                                       for kernel in ("schur-rows", "schur-bodies", "schur-nested")]
-        rows = self.rows_of(scene, *size, "--partitioner", "mindp,multilevel", "--refiner", "none,fm", "--solver", ",".join(solvers),
-                            steps=steps)
+        rows = self.rows_of(scene, *size, "--partitioner", "mindp,multilevel", "--refiner", "none,fm",
+                            "--solver", ",".join(solvers), steps=steps)
         self.assertEqual({row["solver"] for row in rows}, set(solvers))
 
     def test_every_scene_has_a_run(self):

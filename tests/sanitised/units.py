@@ -3,10 +3,10 @@
 
 usage: units.py ROOT SIZE
 
-Prints, one a line, the sources of the project in ROOT, each with the unit that it belongs to: at most SIZE sources of a room, of
-which none declares a name between "namespace {" and its end that another of them, or a header that one of them includes, declares
-too. What is looked at is the first column, where this project's formatting puts every declaration of a namespace; overloads of
-a function count as one name.
+Prints, one a line, the sources of the project in ROOT, each with the unit that it belongs to: at most SIZE sources of a room,
+of which none declares a name between "namespace {" and its end that another of them, or a header that one of them includes,
+declares too. What is looked at is the first column, where this project's formatting puts every declaration of a namespace;
+overloads of a function count as one name.
 """
 import argparse
 import pathlib

@@ -18,7 +18,8 @@ from synthetic import SCRIPTS, command_files, write_matrix, write_steps
 PROGRAM = """#!/bin/sh
 case "$*" in
   sweep*) { grep -q '^partitioner.*nope' "$2" && echo "cleave sweep: x.toml:1: partitioner: 'nope' is unknown" >&2; } ||
-          { grep -q '^solver.*nope' "$2" && echo "cleave sweep: x.toml:1: solver: 'nope' is unknown" >&2; } || touch ran; exit 1 ;;
+          { grep -q '^solver.*nope' "$2" && echo "cleave sweep: x.toml:1: solver: 'nope' is unknown" >&2; } || touch ran
+          exit 1 ;;
   *"--solver nope"*) echo "cleave run: --solver: 'nope' is unknown" >&2; exit 1 ;;
   *nope*) echo "cleave run: --partitioner: 'nope' is unknown" >&2; exit 1 ;;
   *--print-key*) echo '{"run_id": "1", "threads": 1, "git_hash": "f", "git_dirty": "false", "flags": "-march=x86-64-v3",

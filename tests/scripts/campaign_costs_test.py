@@ -17,11 +17,13 @@ class PaperTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as scratch:
             directory = pathlib.Path(scratch)
             for cell in "ab":
-                write_steps(directory / "cells" / cell, [{"repeat_count": 3, "t_s_ms": 100, "t_pr_ms": 1}, {"repeat_count": 2, "t_s_ms": 10, "t_pr_ms": -1}])
+                write_steps(directory / "cells" / cell, [{"repeat_count": 3, "t_s_ms": 100, "t_pr_ms": 1},
+                                                         {"repeat_count": 2, "t_s_ms": 10, "t_pr_ms": -1}])
                 write_manifest(directory / "cells" / cell)
             (directory / "index.csv").write_text(INDEX + "a,1,1,ok,-,-,--scene=x,-,0.4,0.5\nb,0,1,ok,-,-,--scene=x,-,7,8\n")
             rows = campaign_costs.times_of(directory)
-        self.assertEqual({row["what"]: round(row["seconds"], 9) for row in rows}, {"paper_processes": 0.5, "paper_runs": 0.4, "paper_solves": 0.323})
+        self.assertEqual({row["what"]: round(row["seconds"], 9) for row in rows},
+                         {"paper_processes": 0.5, "paper_runs": 0.4, "paper_solves": 0.323})
         rows += [{"what": what, "cells": 9, "round": 1, "seconds": 2, "peak_memory_mb": 50} for what in campaign_costs.WORDS]
         self.assertIn("35.4 % of its processes' time", list(campaign_costs.lines_of(rows))[-1])
 
@@ -37,7 +39,8 @@ class CommandTest(unittest.TestCase):
             with open(pathlib.Path(scratch) / "collected" / "results.csv", newline="") as file:
                 self.assertEqual(len(list(csv.DictReader(file))), 5)
             self.assertTrue((pathlib.Path(scratch) / "campaign" / "index.csv").is_file())
-        self.assertEqual([(row["what"], row["round"]) for row in rows], [(what, number) for number in "12" for what in campaign_costs.WORDS])
+        self.assertEqual([(row["what"], row["round"]) for row in rows],
+                         [(what, number) for number in "12" for what in campaign_costs.WORDS])
         for row in rows:
             self.assertGreater(float(row["seconds"]), 0)
             self.assertGreater(float(row["peak_memory_mb"]), 1)

@@ -47,7 +47,8 @@ def key(options):
 class CampaignsTest(unittest.TestCase):
 
     def test_every_campaign_is_tested_here(self):
-        self.assertEqual({path.stem for path in FOLDER.iterdir()}, {"extremes", "hidden-choices", "ladder", "paper", "report", "scaling", "smoke"})
+        self.assertEqual({path.stem for path in FOLDER.iterdir()},
+                         {"extremes", "hidden-choices", "ladder", "paper", "report", "scaling", "smoke"})
 
     def test_paper_is_its_table_1(self):
         found = cells("paper")
@@ -60,7 +61,8 @@ class CampaignsTest(unittest.TestCase):
         found = cells("scaling")
         self.assertEqual([int(cell["bodies"]) for cell in found], 3 * [50, 100, 200, 400, 600, 800])
         for cell in found:
-            self.assertEqual((cell["partitioner"], cell["refiner"], cell["scene"]), ("mindp,mix", ",".join(REFINERS), "rock_pile"))
+            self.assertEqual((cell["partitioner"], cell["refiner"], cell["scene"]),
+                             ("mindp,mix", ",".join(REFINERS), "rock_pile"))
 
     def test_ladder_has_every_value_of_every_rung_and_every_climber(self):
         same = {"mode": "separate", "partitioner": "mindp", "refiner": "none", "steps": "600", "repeats": "1"}
@@ -77,7 +79,8 @@ class CampaignsTest(unittest.TestCase):
         found = cells("report")
         rocks = [cell for cell in found if cell.get("bodies") == "200"]
         self.assertEqual(sorted((cell["solver"], cell.get("sweeps", cell.get("quickstep-iterations", "-"))) for cell in rocks),
-                         sorted([("exact,monolithic,schur", "-"), ("schur", "-"), *(("pgs", str(n)) for n in (10, 30, 100, 300, 1000, 3000)),
+                         sorted([("exact,monolithic,schur", "-"), ("schur", "-"),
+                                 *(("pgs", str(n)) for n in (10, 30, 100, 300, 1000, 3000)),
                                  *(("ode-quickstep", str(n)) for n in (20, 200, 2000))]))
         self.assertEqual([cell["scene"] for cell in found if "record-motion" in cell], ["chain_drop", "log_tower", "rock_pile"])
         self.assertEqual({cell["threads"] for cell in found if "bodies" in cell}, {"1"})
@@ -94,8 +97,8 @@ class CampaignsTest(unittest.TestCase):
         self.assertEqual({cell["scene"] for cell in found}, set(SCENES))
         self.assertEqual({int(cell["max-bodies"]) for cell in found}, {10, 15, 20, 25, 35, 50, 75, 100})
         self.assertEqual({cell["body-order"] for cell in found}, {"scene", *(f"random@seed={seed}" for seed in (1, 2, 3))})
-        self.assertEqual({(cell.get("logs", "5"), cell.get("layers", "40")) for cell in found}, {("4", "50"), ("5", "40"), ("8", "25"),
-                                                                                                ("10", "20")})
+        self.assertEqual({(cell.get("logs", "5"), cell.get("layers", "40")) for cell in found},
+                         {("4", "50"), ("5", "40"), ("8", "25"), ("10", "20")})
         for cell in found:
             self.assertIn("bfs,bfs@restart=graph,mr,mr@tau-mr=10.5,", cell["partitioner"])
         self.assertEqual(sum(cell["repeats"] == "3" for cell in found), 12)

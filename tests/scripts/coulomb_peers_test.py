@@ -10,7 +10,8 @@ from stand_in import NOTES_ITS_CALL, StandInCase
 
 from cleave_scripts.documents import friction
 from cleave_scripts.documents.stored import Stored
-from cleave_scripts.measurements.coulomb_beside_siconos import CFMS, COLUMNS, MUS, STEPS, THEIRS, beyond, beyond_table, counts, scene_table
+from cleave_scripts.measurements.coulomb_beside_siconos import (CFMS, COLUMNS, MUS, STEPS, THEIRS, beyond, beyond_table,
+                                                                counts, scene_table)
 
 STAND_IN = NOTES_ITS_CALL + """import coulomb_peers_test
 sys.exit(coulomb_peers_test.answer(words, given))
@@ -33,43 +34,49 @@ def answer(words, given):
         touch_recorded(given)
         return 2
     files = [pathlib.Path(word) for word in words if word.endswith(".h5")]
-    write_steps(given["--out"], [dict(scene=file.name.partition("_step")[0], step=int(file.stem[-6:]), bodies=2, rows=12, rows_bilateral=0, solver=solver,
-                           contacts=0 if "silo_step000060" in file.name else 4, iterations=7, residual_m_per_s=1e-12, status="ok")
-                      for file in files for solver in given["--solver"].split(",")])
+    write_steps(given["--out"], [dict(scene=file.name.partition("_step")[0], step=int(file.stem[-6:]), bodies=2, rows=12,
+                                      rows_bilateral=0, solver=solver, contacts=0 if "silo_step000060" in file.name else 4,
+                                      iterations=7, residual_m_per_s=1e-12, status="ok")
+                                 for file in files for solver in given["--solver"].split(",")])
     return 2
 
 
 def row(**given):
     """One that both solved."""
-    return dict(scene="silo", bodies=2, step=60, cfm="1e-5", mu="0.5", contacts=4, rows=12, rows_bilateral=0, status="ok", residual_m_per_s=1e-15,
-                siconos_error=1e-14, peer="siconos-newton", peer_status="ok", peer_iterations=7, peer_residual_m_per_s=1e-12,
-                peer_siconos_error=1e-11, velocity_difference_m_per_s=1e-9) | given
+    return dict(scene="silo", bodies=2, step=60, cfm="1e-5", mu="0.5", contacts=4, rows=12, rows_bilateral=0, status="ok",
+                residual_m_per_s=1e-15, siconos_error=1e-14, peer="siconos-newton", peer_status="ok", peer_iterations=7,
+                peer_residual_m_per_s=1e-12, peer_siconos_error=1e-11, velocity_difference_m_per_s=1e-9) | given
 
 
 class LimitsTest(unittest.TestCase):
 
     def test_every_limit_is_named_where_it_is_passed_and_only_of_what_was_solved(self):
-        for given, words in (({}, []), ({"siconos_error": 2e-8}, ["our error"]), ({"peer_residual_m_per_s": 2e-6}, ["their residual"]),
+        for given, words in (({}, []), ({"siconos_error": 2e-8}, ["our error"]),
+                             ({"peer_residual_m_per_s": 2e-6}, ["their residual"]),
                              ({"velocity_difference_m_per_s": 2e-6}, ["velocities"]),
-                             ({"status": "not_converged", "siconos_error": 1, "velocity_difference_m_per_s": 1}, ["not solved by us"]),
-                             ({"peer_siconos_error": 2e-10, "peer_residual_m_per_s": 1, "velocity_difference_m_per_s": 1}, ["not solved by them"]),
+                             ({"status": "not_converged", "siconos_error": 1, "velocity_difference_m_per_s": 1},
+                              ["not solved by us"]),
+                             ({"peer_siconos_error": 2e-10, "peer_residual_m_per_s": 1, "velocity_difference_m_per_s": 1},
+                              ["not solved by them"]),
                              ({"peer_siconos_error": "nan"}, ["not solved by them"])):
             with self.subTest(given):
                 self.assertEqual(list(beyond(row(**given))), words)
 
     def test_counts_are_of_problems_and_of_pairs(self):
-        rows = [row(), row(peer="siconos-nsgs", peer_siconos_error=1e-3), row(step=200, status="not_converged", siconos_error=1e-5),
-                row(mu="0.3", peer_siconos_error="nan"), row(mu="0.8", velocity_difference_m_per_s=0.5, peer_residual_m_per_s=1e-3),
-                row(mu="0.8", peer="siconos-nsgs")]
+        rows = [row(), row(peer="siconos-nsgs", peer_siconos_error=1e-3),
+                row(step=200, status="not_converged", siconos_error=1e-5), row(mu="0.3", peer_siconos_error="nan"),
+                row(mu="0.8", velocity_difference_m_per_s=0.5, peer_residual_m_per_s=1e-3), row(mu="0.8", peer="siconos-nsgs")]
         told = counts(rows)
         for words in ("4 problems. Solved by us: 3; of these Siconos's error is at most 1e-8 on 3 of 3, of all on 3 of 4.",
-                      "1e-10 4 of 6 times; of these our residual is at most 1e-6 m/s on 3 of 4.", "on 1 of 1 with mu <= 0.5 and on 1 of 2 with a larger one",
-                      "not by us: 1 problems; by us alone: 1."):
+                      "1e-10 4 of 6 times; of these our residual is at most 1e-6 m/s on 3 of 4.",
+                      "on 1 of 1 with mu <= 0.5 and on 1 of 2 with a larger one", "not by us: 1 problems; by us alone: 1."):
             self.assertIn(words, told)
-        self.assertIn("| silo | 1e-5 | 4 to 4 | 3 of 4 | 1.0e-14 | 1 of 4 | 3 of 4 | 0.00100 | 3 | 1.0e-9 | 0.500 |", scene_table(rows))
+        self.assertIn("| silo | 1e-5 | 4 to 4 | 3 of 4 | 1.0e-14 | 1 of 4 | 3 of 4 | 0.00100 | 3 | 1.0e-9 | 0.500 |",
+                      scene_table(rows))
         listed = beyond_table(rows).splitlines()[2:]
         self.assertEqual(len(listed), 4)
-        self.assertEqual(listed[1], "| silo | 200 | 1e-5 | 0.5 | siconos-newton | not solved by us | 1.0e-15 | 1.0e-5 | 1.0e-12 | 1.0e-11 | 1.0e-9 |")
+        self.assertEqual(listed[1], "| silo | 200 | 1e-5 | 0.5 | siconos-newton | not solved by us | 1.0e-15 | 1.0e-5 | "
+                         "1.0e-12 | 1.0e-11 | 1.0e-9 |")
 
 
 class CoulombPeersTest(StandInCase):
@@ -91,13 +98,15 @@ class CoulombPeersTest(StandInCase):
         settings = len(CFMS) * len(MUS)
         self.assertEqual([sum(call.startswith(word) for call in calls) for word in ("record", "replay", "siconos-error")],
                          [2 * settings, 2 * settings, 3 * settings])
-        self.assertIn(f"record --scene silo --at {STEPS[0]},{STEPS[1]} --bodies 27 --friction coulomb --advance exact --cfm 1e-5 --mu 0.3 ", calls[0])
+        self.assertIn(f"record --scene silo --at {STEPS[0]},{STEPS[1]} --bodies 27 --friction coulomb --advance exact "
+                      "--cfm 1e-5 --mu 0.3 ", calls[0])
         self.assertIn(f"--solver exact,{','.join(THEIRS)} --repeats 1 --peer-tolerance 1e-10 --write-solutions", calls[1])
         rows = self.rows()
         self.assertEqual(len(rows), 3 * settings * len(THEIRS))
         self.assertEqual([rows[0][name] for name in ("step", "mu", "cfm", "peer", "siconos_error", "peer_siconos_error")],
                          ["200", "0.3", "1e-5", "siconos-nsgs", "1e-12", "1e-06"])
-        self.assertEqual((rows[1]["peer"], rows[1]["peer_siconos_error"], rows[-1]["peer_siconos_error"]), ("siconos-newton", "nan", "1e-11"))
+        self.assertEqual((rows[1]["peer"], rows[1]["peer_siconos_error"], rows[-1]["peer_siconos_error"]),
+                         ("siconos-newton", "nan", "1e-11"))
         self.assertIn("| chain drop | 1e-9 | 4 to 4 | 6 of 6 | 1.0e-12 | 0 of 6 | 6 of 6 |", said)
         self.assertIn(f"by us alone: {settings}.", said)
 

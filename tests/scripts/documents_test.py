@@ -65,7 +65,8 @@ def packages():
 
 
 def step_record_columns():
-    """Columns of steps.csv as harness/experiment/step_record.h lists them and algorithms declare them, with one t_s_* a stage and worker count."""
+    """Columns of steps.csv as harness/experiment/step_record.h lists them and algorithms declare them,
+    with one t_s_* a stage and worker count."""
     text = (ROOT / "harness" / "experiment" / "step_record.h").read_text()
     columns = re.findall(r'visit(?:_machine)?\(\s*"(\w+)",', text)
     declared = "".join(file.read_text() for room in ("partition", "solver", "harness") for file in (ROOT / room).rglob("*.cpp"))

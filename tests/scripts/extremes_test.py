@@ -40,8 +40,8 @@ class ExtremesTest(StandInCase):
         found = [dict(zip(call.split()[1::2], call.split()[2::2])) for call in calls]
         place = [cell.pop("--out") for cell in found][0]
         self.assertEqual(pathlib.Path(place).parent, self.directory / "out" / "campaign" / "cells")
-        self.assertIn({"--scene": "rock_pile", "--mass": "1,1000000", "--cfm": "0", "--solver": "interior-point:monolithic", "--steps": "20",
-                       "--measure-every": "1", "--repeats": "1", "--threads": "1", "--seed": "7"}, found)
+        self.assertIn({"--scene": "rock_pile", "--mass": "1,1000000", "--cfm": "0", "--solver": "interior-point:monolithic",
+                       "--steps": "20", "--measure-every": "1", "--repeats": "1", "--threads": "1", "--seed": "7"}, found)
         self.assertIn("| 1e6 | mixed_pile | ", result.stdout)
         self.assertEqual(result.stdout.count("20 / 20"), 2 * 10)
         self.assertEqual(self.run_it(*self.QUICK).stdout, result.stdout)

@@ -1,4 +1,5 @@
-"""scripts/friction_cost: its own measure of Coulomb's law, what is made of its rows, and the command with a stand-in for the program."""
+"""scripts/friction_cost: its own measure of Coulomb's law, what is made of its rows,
+and the command with a stand-in for the program."""
 import csv
 import math
 import pathlib
@@ -24,15 +25,16 @@ MU, MASS_KG = 0.5, 2.0
 
 
 def sliding(impulse, velocity, tangents=2):
-    """A body on contacts with the ground that all act at its centre: impulses (contacts, 1 + tangents), its velocity along normal and tangents."""
+    """A body on contacts with the ground that all act at its centre: impulses (contacts, 1 + tangents),
+    its velocity along normal and tangents."""
     impulse = numpy.array(impulse, dtype=float)
     rows = impulse.size
     jacobian, axes = numpy.zeros((rows, 12)), 1 + tangents
     jacobian[numpy.arange(rows), numpy.arange(rows) % axes] = 1
     normal = numpy.arange(rows) // axes * axes
     is_tangent = numpy.arange(rows) % axes > 0
-    return {"mass": MASS_KG * numpy.eye(6)[None], "row_body": numpy.tile([0, -1], (rows, 1)), "jacobian": jacobian, "rhs": numpy.zeros(rows),
-            "compliance": numpy.zeros(rows), "friction_row": numpy.where(is_tangent, normal, -1),
+    return {"mass": MASS_KG * numpy.eye(6)[None], "row_body": numpy.tile([0, -1], (rows, 1)), "jacobian": jacobian,
+            "rhs": numpy.zeros(rows), "compliance": numpy.zeros(rows), "friction_row": numpy.where(is_tangent, normal, -1),
             "friction_coefficient": numpy.where(is_tangent, MU, 0), "impulse": impulse.ravel(),
             "velocity": numpy.array([[*velocity, *[0] * (6 - len(velocity))]], dtype=float)}
 
@@ -49,9 +51,10 @@ def answer(words, given):
     rows = []
     for file in files:
         step = int(file.stem[-6:])
-        rows.append(dict(scene=file.name.partition("_step")[0], bodies=200, cfm="1.0000000000000001e-05", step=step, cold=cold, friction=model,
-                         solver=given["--solver"], rows=9 * (step > 1), iterations=46 if (model, step) == ("cone", 300) else 20, factorizations=22,
-                         residual_m_per_s=1e-15, largest_free_velocity_m_per_s=2, bound_mismatch=0.1, t_s_ms=10 if model == "box" else 14,
+        rows.append(dict(scene=file.name.partition("_step")[0], bodies=200, cfm="1.0000000000000001e-05", step=step, cold=cold,
+                         friction=model, solver=given["--solver"], rows=9 * (step > 1),
+                         iterations=46 if (model, step) == ("cone", 300) else 20, factorizations=22, residual_m_per_s=1e-15,
+                         largest_free_velocity_m_per_s=2, bound_mismatch=0.1, t_s_ms=10 if model == "box" else 14,
                          t_s_waiting_ms=0, status="not_converged" if (model, step) == ("coulomb", 2) else "ok"))
         if "--write-solutions" in words:
             write_solved(out / file.name, sliding([[4, 1 if model == "box" or step < 10 else 2, 0]], (0, -1, 0)))
@@ -98,8 +101,9 @@ class LawTest(unittest.TestCase):
 
 def rows_of(cold, friction, times_ms, **others):
     """Rows of a step each, of two rounds of which the second takes twice as long."""
-    return [{"scene": "rock_pile", "bodies": "200", "cfm": "1e-08", "cold": cold, "friction": friction, "step": step, "round": number,
-             "t_s_ms": t_s_ms * number, "t_s_waiting_ms": t_s_ms * number / 4, "iterations": 9 + step, "status": "ok", "friction_mismatch": 1e-7} | others
+    return [{"scene": "rock_pile", "bodies": "200", "cfm": "1e-08", "cold": cold, "friction": friction, "step": step,
+             "round": number, "t_s_ms": t_s_ms * number, "t_s_waiting_ms": t_s_ms * number / 4, "iterations": 9 + step,
+             "status": "ok", "friction_mismatch": 1e-7} | others
             for number in (1, 2) for step, t_s_ms in enumerate(times_ms)]
 
 
@@ -114,7 +118,8 @@ class RatiosTest(unittest.TestCase):
 
     def test_a_cone_that_is_slow_or_iterates_long_or_is_not_solved_does_not_hold(self):
         box = rows_of(1, "box", (10, 10))
-        for spoiled in (rows_of(1, "cone", (15, 16)), rows_of(1, "cone", (1, 1), iterations=46), rows_of(1, "cone", (1, 1), status="not_converged")):
+        for spoiled in (rows_of(1, "cone", (15, 16)), rows_of(1, "cone", (1, 1), iterations=46),
+                        rows_of(1, "cone", (1, 1), status="not_converged")):
             self.assertFalse(cone_costs(box + spoiled)[200, 1e-8].cone_holds())
 
     def test_a_law_that_is_slow_or_missed_does_not_hold(self):
@@ -154,10 +159,12 @@ class FrictionCostTest(StandInCase):
         said = self.run_it("--rocks", 200, "--cfm", "1e-5", "--scene", "rock_pile", "--steps", 40).stdout
         calls = [call.partition(" --out")[0].split(" ") for call in self.calls()]
         self.assertEqual([" ".join(call[:5]) for call in calls[:2]],
-                         ["record --scene rock_pile --at 100,150,200,250,300", "record --scene rock_pile --at " + ",".join(map(str, range(40)))])
+                         ["record --scene rock_pile --at 100,150,200,250,300",
+                          "record --scene rock_pile --at " + ",".join(map(str, range(40)))])
         self.assertIn("--bodies 200 --cfm 1e-5", " ".join(calls[0]))
         self.assertIn("--threads 2 --friction coulomb", " ".join(calls[1]))
-        replayed = [(call[call.index("--friction") + 1], sum(word.endswith(".h5") for word in call), "--write-solutions" in call, "--cold" in call)
+        replayed = [(call[call.index("--friction") + 1], sum(word.endswith(".h5") for word in call),
+                     "--write-solutions" in call, "--cold" in call)
                     for call in calls[2:]]
         first, rest = SIDE_BY_SIDE, 40 - SIDE_BY_SIDE
         self.assertEqual(replayed, [("box", 5, False, True), ("cone", 5, False, True)] +
@@ -176,10 +183,12 @@ class FrictionCostTest(StandInCase):
         self.assertEqual(names, ["200 rocks, cfm 1e-4", "200 rocks, cfm 1e-14", "600 rocks, cfm 1e-4", "600 rocks, cfm 1e-14"])
 
     def test_what_is_not_measured_is_not_told(self):
-        self.assertNotIn("Coulomb", self.run_it("--rocks", 200, "--cfm", "1e-5", "--scene", "rock_pile", "--steps", 1, "--rounds", 1).stdout)
+        self.assertNotIn("Coulomb", self.run_it("--rocks", 200, "--cfm", "1e-5", "--scene", "rock_pile", "--steps", 1,
+                                                "--rounds", 1).stdout)
 
     def test_bad_options_are_one_line(self):
-        self.check_refused((("--rocks", 300), "--rocks has '300'"), (("--cfm", "1e-3"), "--cfm has '1e-3'"), (("--rounds", 0), "--rounds is '0'"),
+        self.check_refused((("--rocks", 300), "--rocks has '300'"), (("--cfm", "1e-3"), "--cfm has '1e-3'"),
+                           (("--rounds", 0), "--rounds is '0'"),
                            (("--steps", 3, "--measure-every", 4), "--measure-every is '4'"))
 
 

@@ -59,11 +59,13 @@ class AblateInteriorPointTest(StandInCase):
             rows = list(csv.DictReader(file))
         self.assertEqual(len(rows), 6 * 16)
         self.assertEqual(rows[-1]["problem"], "ladder_loop_cfm_0/ladder_loop_step000320.h5")
-        self.assertIn("As it is: 160 factorisations over 16 problems, at most 10 of one; 0 proximal, 0 above the limit", result.stdout)
+        self.assertIn("As it is: 160 factorisations over 16 problems, at most 10 of one; 0 proximal, 0 above the limit",
+                      result.stdout)
         self.assertIn("| `useful` | off (0): 176 (1.100) |", result.stdout)
         self.assertIn("| `safe` | off (0): 160 (1.000), 1 proximal, 1 above the limit |", result.stdout)
         self.assertIn("| `shape` | 1: 160 (1.000); 4: 176 (1.100) |", result.stdout)
-        self.assertTrue(result.stdout.endswith("(less than 0.01 of the factorisations, and no problem): `harmful`.\n"), result.stdout)
+        self.assertTrue(result.stdout.endswith("(less than 0.01 of the factorisations, and no problem): `harmful`.\n"),
+                        result.stdout)
 
     def test_the_constants_asked_for_are_passed_on(self):
         self.run_it("--scene", "log_tower", "--cfm", "0", "--constant", "reach,band")

@@ -65,7 +65,8 @@ class LadderTest(unittest.TestCase):
         self.program.chmod(0o755)
 
     def environment(self, told):
-        return dict(os.environ, CLEAVE_PROGRAM=str(self.program), STAND_IN_REAL=PROGRAM, STAND_IN_LOG=str(self.log), STAND_IN=told)
+        return dict(os.environ, CLEAVE_PROGRAM=str(self.program), STAND_IN_REAL=PROGRAM, STAND_IN_LOG=str(self.log),
+                    STAND_IN=told)
 
     def ladder(self, *arguments, told="", code=0):
         result = run_script("ladder",
@@ -186,18 +187,20 @@ class LadderTest(unittest.TestCase):
         self.assertEqual((climber_of("pgs_200").solver, climber_of("pgs_200").friction), ("pgs@sweeps=200", "box"))
         self.assertEqual((climber_of("exact_cone").solver, climber_of("exact_cone").friction), ("exact", "cone"))
         self.ladder("--solver", "exact,exact_cone,pgs_20")
-        self.assertEqual(sorted({tuple(call.split()[call.split().index(name) + 1] for name in ("--solver", "--friction")) for call in self.calls()}),
+        self.assertEqual(sorted({tuple(call.split()[call.split().index(name) + 1] for name in ("--solver", "--friction"))
+                                 for call in self.calls()}),
                          [("exact", "box"), ("exact", "cone"), ("pgs@sweeps=20", "box")])
 
     def test_the_summary_tells_values_as_they_are_written(self):
-        row = {"rung": "time_step", "parameter": "dt", "solver": "exact", "first_failing": repr(1 / 60), "first_failing_physics": "-"}
+        row = {"rung": "time_step", "parameter": "dt", "solver": "exact", "first_failing": repr(1 / 60),
+               "first_failing_physics": "-"}
         with contextlib.redirect_stdout(io.StringIO()) as told:
             runpy.run_path(str(SCRIPTS / "ladder"))["print_summary"]([row])
         self.assertEqual(told.getvalue().splitlines()[1], "time_step (dt)       0.016666666666666666 / -")
 
     def test_bad_input_is_one_line_and_leaves_nothing(self):
-        for arguments in (("--rung", "heavy"), ("--solver", "pgs"), ("--solver", "exact,pgs"), ("--steps", "0"), ("--timeout", "nan"),
-                          ("--jobs", "x")):
+        for arguments in (("--rung", "heavy"), ("--solver", "pgs"), ("--solver", "exact,pgs"), ("--steps", "0"),
+                          ("--timeout", "nan"), ("--jobs", "x")):
             result = self.ladder(*arguments, code=1)
             self.assertEqual(len(result.stderr.splitlines()), 1, result.stderr)
             self.assertIn(arguments[0], result.stderr)
@@ -273,7 +276,8 @@ class ClosedFormTest(unittest.TestCase):
             twin = by_name[rung.name + "_off_axis"]
             self.assertEqual(twin.setup, "off_axis")
             for value in rung.values:
-                self.assertEqual({**rung.settings(value), "overlap-m": "1e-6", "layer-m": "5e-7", "offset-m": "1e-3"}, twin.settings(value))
+                self.assertEqual({**rung.settings(value), "overlap-m": "1e-6", "layer-m": "5e-7", "offset-m": "1e-3"},
+                                 twin.settings(value))
             self.assertEqual((rung.values, rung.quick, rung.expect), (twin.values, twin.quick, twin.expect))
 
     def test_a_chain_is_open_widest_at_its_top(self):

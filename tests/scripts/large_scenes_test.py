@@ -60,11 +60,12 @@ class DissectionTest(unittest.TestCase):
         """In the only order of fill that two boxes have, and in nested dissection, which it takes of so many."""
         for bodies in (2, 2000):
             with tempfile.TemporaryDirectory() as scratch:
-                file, = record(PROGRAM, pathlib.Path(scratch) / "steps", "silo", [2], "--bodies", bodies, "--advance", "pgs@sweeps=30",
-                               all_ok=False)
+                file, = record(PROGRAM, pathlib.Path(scratch) / "steps", "silo", [2], "--bodies", bodies,
+                               "--advance", "pgs@sweeps=30", all_ok=False)
                 row, = replay(PROGRAM, pathlib.Path(scratch) / "replay", [file], "--solver", "exact", "--repeats", 1)
                 self.assertEqual(graph_of(file).body_count, bodies)
-                self.assertAlmostEqual(dissection_mflop(file) / row.number("factor_mflop_local"), 1, places=1 if bodies > 2 else 9)
+                self.assertAlmostEqual(dissection_mflop(file) / row.number("factor_mflop_local"), 1,
+                                       places=1 if bodies > 2 else 9)
 
 
 class TablesTest(unittest.TestCase):
@@ -79,10 +80,13 @@ class TablesTest(unittest.TestCase):
         told = self.told(stored_data.large_scenes_rows())
         self.assertIn("medians of 3 replays", told)
         self.assertIn("Solves that waited more than 5 % of t_s a thread for a core are left out: 0.", told)
-        self.assertIn("| 10000 | 1 | 100000 | 5 | 0.0200 | 850 | 1.70 | 1.00 | 850 | 0.20 | at most 90 sweeps: does not hold |\n"
+        self.assertIn("| 10000 | 1 | 100000 | 5 | 0.0200 | 850 | 1.70 | 1.00 | 850 | 0.20 | "
+                      "at most 90 sweeps: does not hold |\n"
                       "| 10000 | 2 | 100000 | 5 | 0.0200 | 500 | 1.00 | 1.00 | - | 0.20 | - |\n"
-                      "| 100000 | 1 | 1000000 | 10 | 0.00200 | 28900 | 2.89 | 1.70 | 2890 | 2.00 | at most 1.6 times the smallest: does not hold |\n"
-                      "| 100000 | 2 | 1000000 | 10 | 0.00200 | 15000 | 1.50 | 1.50 | - | 2.00 | at most 1.6 times the smallest: holds |\n", told)
+                      "| 100000 | 1 | 1000000 | 10 | 0.00200 | 28900 | 2.89 | 1.70 | 2890 | 2.00 | "
+                      "at most 1.6 times the smallest: does not hold |\n"
+                      "| 100000 | 2 | 1000000 | 10 | 0.00200 | 15000 | 1.50 | 1.50 | - | 2.00 | "
+                      "at most 1.6 times the smallest: holds |\n", told)
         self.assertIn("| 10000 | 1 | 300000 | 4 | 900 | 1.10 | 1.10 | 40.0 | 50.0 | 80 % | holds |\n"
                       "| 10000 | 2 | 300000 | 4 | 600 | 1.10 | 1.10 | 80.0 | 100 | 80 % | holds |", told)
 
@@ -104,9 +108,10 @@ class TablesTest(unittest.TestCase):
     def test_rows_that_waited_for_a_core_do_not_count_and_are_counted(self):
         """The first round of 10000 rocks on two threads, where it had been fast, and all of the silo on one."""
         def waited(row):
-            return (row["scene"], row["round"], row["threads"]) == ("rock_pile", 1, 2) and row["bodies"] == 10000 or row["scene"] == "silo" and row["threads"] == 1
-        rows = [row | {"t_s_waiting_ms": 0.051 * row["t_s_ms"] * int(row["threads"]), "t_s_ms": row["t_s_ms"] / 100} if waited(row) else row
-                for row in stored_data.large_scenes_rows()]
+            return ((row["scene"], row["round"], row["threads"]) == ("rock_pile", 1, 2) and row["bodies"] == 10000 or
+                    row["scene"] == "silo" and row["threads"] == 1)
+        rows = [row | {"t_s_waiting_ms": 0.051 * row["t_s_ms"] * int(row["threads"]), "t_s_ms": row["t_s_ms"] / 100}
+                if waited(row) else row for row in stored_data.large_scenes_rows()]
         told = self.told(rows)
         self.assertIn("are left out: 4.", told)
         self.assertIn("| 10000 | 2 | 100000 | 5 | 0.0200 | 2750 | 5.50 | 1.00 |", told)
@@ -115,10 +120,12 @@ class TablesTest(unittest.TestCase):
 
     def test_a_sweep_that_waited_and_files_without_sweeps_tell_none(self):
         rows = stored_data.large_scenes_rows()
-        slow = [row | {"t_s_waiting_ms": 0.11 * row["t_s_ms"]} if row["solver"] != "exact" and row["round"] < 3 else row for row in rows]
+        slow = [row | {"t_s_waiting_ms": 0.11 * row["t_s_ms"]} if row["solver"] != "exact" and row["round"] < 3 else row
+                for row in rows]
         self.assertIn("| 850 | 0.20 | at most 90 sweeps: does not hold |", self.told(slow))  # by the third round
         older = [{name: value for name, value in row.items() if name != "solver"} for row in rows if row["solver"] == "exact"]
-        self.assertIn("| 10000 | 1 | 100000 | 5 | 0.0200 | 850 | 1.70 | 1.00 | - | 0.20 | at most 90 sweeps: not measured |\n", self.told(older))
+        self.assertIn("| 10000 | 1 | 100000 | 5 | 0.0200 | 850 | 1.70 | 1.00 | - | 0.20 | at most 90 sweeps: not measured |\n",
+                      self.told(older))
 
 
 STAND_IN = NOTES_ITS_CALL + f"""import h5py, numpy
@@ -133,9 +140,11 @@ if words[0] == "record":
     sys.exit(2)  # as steps that sweeps move are not exact
 else:
     scene, bodies = pathlib.Path(words[1]).parent.name.rsplit("_", 1)
-    write_steps(out, [dict(scene=scene, bodies=bodies, step=40, solver=given["--solver"], threads=given["--threads"], rows=1000, factorizations=2, kinetic_energy_j=1,
-                           t_s_ms=int(bodies), t_s_waiting_ms=0, t_s_factor_local_ms=2, factor_mflop_local=0.01, factor_mflop_done=60,
-                           peak_memory_mb=100, partitioner="-", refiner="-", status=os.environ.get("STAND_IN_STATUS", "ok" if given["--solver"] == "exact" else "not_converged"))])
+    status = "ok" if given["--solver"] == "exact" else "not_converged"
+    write_steps(out, [dict(scene=scene, bodies=bodies, step=40, solver=given["--solver"], threads=given["--threads"], rows=1000,
+                           factorizations=2, kinetic_energy_j=1, t_s_ms=int(bodies), t_s_waiting_ms=0,
+                           t_s_factor_local_ms=2, factor_mflop_local=0.01, factor_mflop_done=60, peak_memory_mb=100,
+                           partitioner="-", refiner="-", status=os.environ.get("STAND_IN_STATUS", status))])
 """
 BENCHMARK = """#!/usr/bin/python3
 import json, os, sys
@@ -168,7 +177,8 @@ class LargeScenesTest(StandInCase):
         self.assertEqual([call.split()[0] for call in calls[3:]], ["benchmark", *["replay"] * 8] * 2)
         replayed = [(words[1].split("/")[-2], words[words.index("--solver"):words.index("--out")])
                     for words in map(str.split, calls[3:]) if words[0] == "replay"]
-        exact, sweeps = [f"--solver exact --repeats 3 --threads {threads}" for threads in (1, 2)], "--solver pgs@sweeps=300 --repeats 1 --threads 1"
+        exact, sweeps = ([f"--solver exact --repeats 3 --threads {threads}" for threads in (1, 2)],
+                         "--solver pgs@sweeps=300 --repeats 1 --threads 1")
         ten, twenty, silo = ([(name, options.split()) for options in (*exact, *more)]
                              for name, *more in (("rock_pile_10", sweeps), ("rock_pile_20", sweeps), ("silo_2",)))
         self.assertEqual(replayed, ten + twenty + silo + silo + twenty + ten)
@@ -176,17 +186,19 @@ class LargeScenesTest(StandInCase):
             rows = list(csv.DictReader(file))
         self.assertEqual((tuple(rows[0]), len(rows)), (large_scenes.COLUMNS, 16))
         self.assertEqual([row["dissection_mflop"] for row in rows[:2]], ["nan", "nan"])
-        self.assertIn("| 20 | 1 | 1000 | 2 | 0.0500 | 20.0 | 10.0 | 2.00 | 300 | 0.10 | at most 1.6 times the smallest: does not hold |", said)
+        self.assertIn("| 20 | 1 | 1000 | 2 | 0.0500 | 20.0 | 10.0 | 2.00 | 300 | 0.10 | "
+                      "at most 1.6 times the smallest: does not hold |", said)
         pair = 1e-6 * sum(k**2 for k in range(1, 13))
         self.assertIn(f"| 2 | 1 | 1000 | 2 | 2.00 | 1.0e-5 | {0.01 / pair:.2f} | 30.0 | 40.0 | 75 % | holds |", said)
         self.assertIn("| 30.0 | 60.0 | 50 % | does not hold |", said)
         self.assertTrue(said.endswith("Solves that waited more than 5 % of t_s a thread for a core are left out: 0.\n"), said)
 
     def test_options_and_failures_are_one_line(self):
-        self.check_refused((("--piles", "1"), "--piles has '1', expected a whole number from 2 to 200000"), (("--silos", "4,x"), "--silos has 'x'"),
-                           (("--rounds", 0), "--rounds is '0'"))
+        self.check_refused((("--piles", "1"), "--piles has '1', expected a whole number from 2 to 200000"),
+                           (("--silos", "4,x"), "--silos has 'x'"), (("--rounds", 0), "--rounds is '0'"))
         with unittest.mock.patch.dict(os.environ, STAND_IN_STATUS="not_converged"):
-            self.assertIn("1 of 1 replayed cells are not ok", self.run_it("--piles", 10, "--silos", 2, code=1).stderr.splitlines()[-1])
+            self.assertIn("1 of 1 replayed cells are not ok",
+                          self.run_it("--piles", 10, "--silos", 2, code=1).stderr.splitlines()[-1])
         self.assertFalse((self.directory / "out").exists())
 
 

@@ -40,8 +40,9 @@ if words[0] == "record":
     sys.exit(2 if "--advance" in words else 0)  # as steps that sweeps move are not exact
 if words[0] == "run":
     given = dict(zip(words, words[1:]))
-    write_steps(out, [dict(scene=given["--scene"], bodies=600, step=step, partitioner=given["--partitioner"], refiner=given["--refiner"],
-                           repartition=given["--repartition"], partition_origin="fresh", rows=1200 * step, interface_rows=40, parts=5,
+    write_steps(out, [dict(scene=given["--scene"], bodies=600, step=step, partitioner=given["--partitioner"],
+                           refiner=given["--refiner"], repartition=given["--repartition"], partition_origin="fresh",
+                           rows=1200 * step, interface_rows=40, parts=5,
                            t_pr_ms=0.1, t_s_ms=8) for step in range(int(given["--steps"]))])
     sys.exit(0)
 files = [word for word in words if word.endswith(".h5")]
@@ -49,27 +50,36 @@ assert files and all(os.path.exists(file) for file in files), files
 def recorded(file):
     asked = pathlib.Path(file).read_text().split()
     asked = dict(zip(asked, asked[1:]))
-    return dict(scene=asked["--scene"], bodies=asked.get("--bodies", 600), cfm=float(asked.get("--cfm", 1e-5)), step=int(file[-9:-3]))
+    return dict(scene=asked["--scene"], bodies=asked.get("--bodies", 600), cfm=float(asked.get("--cfm", 1e-5)),
+                step=int(file[-9:-3]))
 beside = out.name == "replay1"  # the second of two at the same time
 threads = int(words[words.index("--threads") + 1]) if "--threads" in words else 1
 given = dict(zip(words, words[1:]))
 def alone_ms(step):
-    return (float(os.environ.get("STAND_IN_MS", 8)) if step == 100 else 8) * (float(os.environ.get("STAND_IN_BESIDE", 1)) if beside else 1)
+    alone = float(os.environ.get("STAND_IN_MS", 8)) if step == 100 else 8
+    return alone * (float(os.environ.get("STAND_IN_BESIDE", 1)) if beside else 1)
 def apart_ns(threads, solver):
     return float(os.environ.get("STAND_IN_APART", 100) if threads > 1 and solver == "exact" else "nan")
 def modelled(step, threads):
     # As measured, but for step 100 as the test says.
     two = alone_ms(step) / 2 * (float(os.environ.get("STAND_IN_MODEL", 1)) if step == 100 else 1)
-    more = {{name: alone_ms(step) / 8 for name in ("t_s_critical_path_ms", *(f"t_s_model_p{{p}}_ms" for p in (4, 8, 16, 32, 64)))}}
+    of_workers = [f"t_s_model_p{{p}}_ms" for p in (4, 8, 16, 32, 64)]
+    more = {{name: alone_ms(step) / 8 for name in ("t_s_critical_path_ms", *of_workers)}}
     return {{"t_s_model_p2_ms": two, **more}} if threads == 1 else dict.fromkeys(("t_s_model_p2_ms", *more), float("nan"))
-names = list(itertools.product(asked_partitioners(given.get("--partitioner", "-")), asked_refiners(given.get("--refiner", "-"))))
+names = list(itertools.product(asked_partitioners(given.get("--partitioner", "-")),
+                               asked_refiners(given.get("--refiner", "-"))))
 whole = ("pivot:monolithic", "auto:monolithic")  # ignore parts
-path = write_steps(out, [dict(**recorded(file), partitioner="-" if solver in whole else partitioner, refiner="-" if solver in whole else refiner,
-                       threads=threads, rows=1200, interface_rows=0 if partitioner == "single" else 50 if "whole" in words else 40, parts=1 if partitioner == "single" else 5,
-                       status=os.environ.get("STAND_IN_STATUS", "not_converged" if "@sweeps" in solver else "ok"), t_s_ms=alone_ms(int(file[-9:-3])) / threads, t_s_waiting_ms=float(os.environ.get("STAND_IN_WAITING", 0.25)),
+path = write_steps(out, [dict(**recorded(file), partitioner="-" if solver in whole else partitioner,
+                       refiner="-" if solver in whole else refiner, threads=threads, rows=1200,
+                       interface_rows=0 if partitioner == "single" else 50 if "whole" in words else 40,
+                       parts=1 if partitioner == "single" else 5,
+                       status=os.environ.get("STAND_IN_STATUS", "not_converged" if "@sweeps" in solver else "ok"),
+                       t_s_ms=alone_ms(int(file[-9:-3])) / threads,
+                       t_s_waiting_ms=float(os.environ.get("STAND_IN_WAITING", 0.25)),
                        core_round_trip_ns=apart_ns(threads, solver),
                        factorizations=9 if "--cold" in words else 2, seed=1, solver=solver,
-                       t_pr_ms=float(os.environ.get("STAND_IN_AUTO_MS", 0.1)) if partitioner == "auto" else 0.1, calibration="-", auto_choice="-",
+                       t_pr_ms=float(os.environ.get("STAND_IN_AUTO_MS", 0.1)) if partitioner == "auto" else 0.1,
+                       calibration="-", auto_choice="-",
                        **modelled(int(file[-9:-3]), threads))
                   for file in files for partitioner, refiner in names for solver in given.get("--solver", "schur").split(",")])
 os.utime(path, (0, float(os.environ.get("STAND_IN_LATE_S", 0)) if beside else 0))
@@ -97,7 +107,8 @@ class Measurement(StandInCase):
 
     def check_least(self, option, least):
         """What is less than the least number of rounds or repetitions is one line, before anything runs."""
-        self.check_refused(((option, least - 1), f"{option} is '{least - 1}', expected a whole number from {least} to 999999999; see"),
+        self.check_refused(((option, least - 1),
+                            f"{option} is '{least - 1}', expected a whole number from {least} to 999999999; see"),
                            ((option, "x"), f"{option} is 'x', expected a whole number from {least} to"))
 
 
@@ -107,7 +118,8 @@ class ModelledWorkersTest(Measurement):
 
     def model(self, share, code=0, ms=20, waiting_ms=0.1):
         """Step 100 takes ms on one thread and half of it on two, which the model gives times share; step 200 takes 8 ms."""
-        with unittest.mock.patch.dict(os.environ, STAND_IN_MODEL=str(share), STAND_IN_MS=str(ms), STAND_IN_WAITING=str(waiting_ms)):
+        with unittest.mock.patch.dict(os.environ, STAND_IN_MODEL=str(share), STAND_IN_MS=str(ms),
+                                      STAND_IN_WAITING=str(waiting_ms)):
             return self.run_it("--rounds", 3, code=code)
 
     def test_one_and_two_threads_take_turns_on_the_same_files(self):
@@ -115,7 +127,8 @@ class ModelledWorkersTest(Measurement):
         calls = self.calls()
         records, replays = ([call for call in calls if call.startswith(word)] for word in ("record", "replay"))
         self.assertEqual([" --advance pgs@sweeps=30 " in call for call in records], [False] * 5 + [True] * 2)
-        self.assertEqual([call.partition(" --cfm")[0] for call in records[5:]], ["record --scene rock_pile --at 150 --bodies 10000"] * 2)
+        self.assertEqual([call.partition(" --cfm")[0] for call in records[5:]],
+                         ["record --scene rock_pile --at 150 --bodies 10000"] * 2)
         told = [call.partition(".h5 --solver ")[2].partition(" --partitioner mix --refiner fm --repeats ") for call in replays]
         self.assertEqual({solvers for solvers, *_ in told[::2]}, {"exact,schur,pivot:schur-bodies,pivot:schur-nested"})
         self.assertEqual({solvers for solvers, *_ in told[1::2]}, {"exact,pivot:schur-nested"})
@@ -127,7 +140,8 @@ class ModelledWorkersTest(Measurement):
 
     def test_the_error_of_slow_steps_decides_and_all_others_are_shown(self):
         said = self.model(0.9).stdout
-        self.assertIn("Steps of 5 ms and more on two threads: 20, median error 10.0 %, from -10 to -10 %; with medians over", said)
+        self.assertIn("Steps of 5 ms and more on two threads: 20, median error 10.0 %, from -10 to -10 %; with medians over",
+                      said)
         self.assertIn("| rock_pile | 200 | 1e-05 | 100 | exact | 20.0 | 9.00 | 10.0 | -10 % | 2.50 | 2.50 | 2.50 |", said)
         self.assertIn("Steps below 5 ms: 24, median error 0.0 %", said)
         self.assertIn("| rock_pile | 200 | 1e-05 | 200 | exact | 8.00 | 4.00 | 4.00 | +0 % |", said)
@@ -151,7 +165,8 @@ class ModelledWorkersTest(Measurement):
 
     def test_speed_ups_are_of_the_fastest_solver_on_one_thread_and_of_the_least_that_is_modelled(self):
         def step(bodies, solver, one_ms, modelled_ms, number=1):
-            return modelled_times.Step(("s", str(bodies), "1e-05", str(number), solver), one_ms, one_ms / 2, one_ms / 2, [modelled_ms, 1, 1], 0)
+            return modelled_times.Step(("s", str(bodies), "1e-05", str(number), solver), one_ms, one_ms / 2, one_ms / 2,
+                                       [modelled_ms, 1, 1], 0)
         steps = [step(600, "exact", 20, 4), step(600, "schur", 24, 2), step(600, "nested", 30, 3), step(200, "exact", 9, 1),
                  step(600, "exact", 12, 2, number=2), step(10000, "exact", 90, 10)]
         found = modelled_times.speed_ups(steps)
@@ -163,7 +178,8 @@ class ModelledWorkersTest(Measurement):
         self.assertEqual(modelled_times.lines_of_speed_ups(steps[3:4]), "")
 
     def test_the_document_says_the_same(self):
-        self.assertIn("| rock_pile | 600 | 1e-05 | 200 | 8.00 (`exact`) | 1.00 (`exact`) | 8.00 | 6, holds |\n", self.model(0.9).stdout)
+        self.assertIn("| rock_pile | 600 | 1e-05 | 200 | 8.00 (`exact`) | 1.00 (`exact`) | 8.00 | 6, holds |\n",
+                      self.model(0.9).stdout)
         made = speed.modelled_workers(self.stored())
         self.assertIn("the fastest of 3 rounds, seed 1, `mix+fm`", made)
         self.assertIn("| rock_pile | 200 | 1e-05 | 100 | exact | 20.0 | 9.00 | 10.0 | -10 % |", made)
@@ -213,7 +229,8 @@ class IdleCostTest(Measurement):
         self.assertEqual(sum(call.startswith("replay") for call in self.calls()), 2 * 2 * 2)
         self.assertIn("large_rock_pile: 1.000 of the time", result.stdout)
         self.assertIn("chain_drop: 1.000 of the time", result.stdout)
-        self.assertIn("1.00 times as long as with threads that never sleep on large rock pile and 1.00 times", speed.idle_cost(self.stored()))
+        self.assertIn("1.00 times as long as with threads that never sleep on large rock pile and 1.00 times",
+                      speed.idle_cost(self.stored()))
 
     def test_bad_input_is_one_line(self):
         self.assertIn("--rounds is '0', expected a whole number from 1", self.run_it("--rounds", 0, code=1).stderr)
@@ -267,7 +284,8 @@ class CutTargetsTest(unittest.TestCase):
                          ["with at most 1.05 times its rows in the mean", "and on every one of these graphs"])
         self.assertEqual(self.failed(fast, cpu_time=4e3), ["a body takes at most 3 times as long at 100000 as at 1000"])
         self.assertEqual(self.failed("mindp@merge-small=true+fm", interface_rows=800),
-                         ["mindp+fm, mended, is within 15 % of the best peer in the mean", "mindp+fm, mended, on every graph too"])
+                         ["mindp+fm, mended, is within 15 % of the best peer in the mean",
+                          "mindp+fm, mended, on every graph too"])
 
 
 class ColdStartsTest(Measurement):
@@ -327,9 +345,12 @@ class PartitionWorthTest(Measurement):
         of_round = len(replays) // 2
         self.assertEqual(of_round, 2 * (10 * 4 + 2 + 3 * 4))  # threads; cases, replays of each
         given = [dict(zip(words, words[1:])) for words in replays]
-        self.assertTrue(all("single" in of["--partitioner"].split(",") and of["--solver"].endswith(",auto:monolithic") for of in given))
-        self.assertEqual([[of["--threads"] for of in of_half[:5]] for of_half in (given[:of_round], given[of_round:])], [["1"] * 4 + ["2"], ["2"] * 4 + ["1"]])
-        first, second = (next(of for of in of_half if "mix" in of["--partitioner"]) for of_half in (given[:of_round], given[of_round:]))
+        self.assertTrue(all("single" in of["--partitioner"].split(",") and of["--solver"].endswith(",auto:monolithic")
+                            for of in given))
+        self.assertEqual([[of["--threads"] for of in of_half[:5]] for of_half in (given[:of_round], given[of_round:])],
+                         [["1"] * 4 + ["2"], ["2"] * 4 + ["1"]])
+        first, second = (next(of for of in of_half if "mix" in of["--partitioner"])
+                         for of_half in (given[:of_round], given[of_round:]))
         for option in ("--partitioner", "--solver"):
             self.assertNotEqual(first[option], second[option])
             self.assertEqual(sorted(first[option].split(",")), sorted(second[option].split(",")))
@@ -359,13 +380,15 @@ class PartitionRegretTest(Measurement):
         calls = self.calls()
         replays = [call.split() for call in calls if call.startswith("replay ")]
         self.assertEqual((len(calls), len(replays)), (4 * (1 + 2 * 4), 4 * 2 * 4))
-        solvers = {kernel: f"pivot:{kernel},pivot:monolithic" for kernel in ("schur-rows", "schur-bodies", "schur-nested")} | {"any": "pivot:chosen,pivot:monolithic"}
+        solvers = {kernel: f"pivot:{kernel},pivot:monolithic"
+                   for kernel in ("schur-rows", "schur-bodies", "schur-nested")} | {"any": "pivot:chosen,pivot:monolithic"}
         for words in replays:
             given = dict(zip(words, words[1:]))
             self.assertEqual(given["--solver"], solvers[given["--cost-kernel"]])
             self.assertEqual((given["--threads"], given["--cost-threads"]), ("2", "2"))
         rows = self.rows("partition_regret.csv")
-        # scenes, steps and rounds; kernels, refiners, partitioners and solvers, of which the stand-in splits for both; chosen and monolithic
+        # scenes, steps and rounds; kernels, refiners, partitioners and solvers, of which the stand-in splits for both;
+        # chosen and monolithic
         self.assertEqual(len(rows), 4 * 12 * 2 * (3 * 2 * (5 + 3 * 5 + 1) * 2 + 2))
         self.assertEqual({row["replay"] for row in rows}, {"schur-rows", "schur-bodies", "schur-nested", "any"})
         self.assertEqual({row["round"] for row in rows}, {"1", "2"})
@@ -381,8 +404,9 @@ class PartitionRegretTest(Measurement):
 
 def worth_rows(solver, partitioner, times, model_ms=1, threads=1, **changes):
     """times: t_s in ms a round, from round 1; without t_pr."""
-    return [{"scene": "s", "bodies": 9, "cfm": 1e-5, "step": 2, "rows": 30, "solver": f"auto:{solver}", "partitioner": partitioner,
-             "refiner": "-" if partitioner == "-" else "fm", "parts": 3, "interface_rows": 12, "threads": threads, "t_pr_ms": 0, "t_s_ms": t_s_ms,
+    return [{"scene": "s", "bodies": 9, "cfm": 1e-5, "step": 2, "rows": 30, "solver": f"auto:{solver}",
+             "partitioner": partitioner, "refiner": "-" if partitioner == "-" else "fm", "parts": 3, "interface_rows": 12,
+             "threads": threads, "t_pr_ms": 0, "t_s_ms": t_s_ms,
              **{f"t_s_model_p{p}_ms": model_ms for p in partition_worth.MODELLED}, "round": number, "replay": "one", **changes}
             for number, t_s_ms in enumerate(times, 1)]
 
@@ -394,7 +418,8 @@ def whole_rows(times, **changes):
 class PartitionWorthAnalysisTest(unittest.TestCase):
 
     def problem(self, *series, two=()):
-        rows = sum(series, whole_rows([10] * 4) if not any(of[0]["solver"] == partition_worth.WHOLE_SYSTEM for of in series) else [])
+        rows = sum(series,
+                   whole_rows([10] * 4) if not any(of[0]["solver"] == partition_worth.WHOLE_SYSTEM for of in series) else [])
         (problem,) = partition_worth.problems(rows + sum(two, whole_rows([10] * 4, threads=2)))
         return problem
 
@@ -402,22 +427,28 @@ class PartitionWorthAnalysisTest(unittest.TestCase):
         """The cells of the generated table, less the problem."""
         with tempfile.TemporaryDirectory() as scratch:
             root = pathlib.Path(scratch)
-            write_csv(root / "partition_worth.csv", sum(series, whole_rows([10] * 4)) + sum(two, whole_rows([10] * 4, threads=2)))
+            write_csv(root / "partition_worth.csv",
+                      sum(series, whole_rows([10] * 4)) + sum(two, whole_rows([10] * 4, threads=2)))
             return worth.worth(Stored(root)).split("\n\n")[1].splitlines()[-1].strip("| ").split(" | ")[1:]
 
     def test_the_odd_rounds_choose_the_partition_and_the_even_ones_tell_its_time(self):
-        cells = self.problem(worth_rows("schur-rows", "mix", [5, 9, 5, 8]), worth_rows("schur-rows", "bfs", [6, 1, 6, 1])).best[1]
+        cells = self.problem(worth_rows("schur-rows", "mix", [5, 9, 5, 8]),
+                             worth_rows("schur-rows", "bfs", [6, 1, 6, 1])).best[1]
         self.assertEqual((cells["auto:schur-rows"].partition, cells["auto:schur-rows"].time_ms), ("mix+fm", 8.5))
         self.assertEqual(self.problem(worth_rows("schur-rows", "mix", [5, 90, 7, 90])).best[1]["auto:schur-rows"].chosen_ms, 6)
-        self.assertEqual(self.problem(worth_rows("schur-rows", "mix", [5, 9, 5, 8]), worth_rows("schur-bodies", "mix", [6, 1, 6, 1])).base_ms, 8.5)
+        self.assertEqual(self.problem(worth_rows("schur-rows", "mix", [5, 9, 5, 8]),
+                                      worth_rows("schur-bodies", "mix", [6, 1, 6, 1])).base_ms, 8.5)
 
     def test_the_fastest_partition_counts_for_each_number_of_workers(self):
-        problem = self.problem(worth_rows("schur-rows", "mix", [9] * 4, 4, t_pr_ms=1), worth_rows("schur-rows", "bfs", [7] * 4, 6, t_pr_ms=1),
-                               whole_rows([4] * 4, model_ms=3.9), two=[worth_rows("schur-rows", "mix", [5] * 4, 0, 2, t_pr_ms=1)])
+        problem = self.problem(worth_rows("schur-rows", "mix", [9] * 4, 4, t_pr_ms=1),
+                               worth_rows("schur-rows", "bfs", [7] * 4, 6, t_pr_ms=1), whole_rows([4] * 4, model_ms=3.9),
+                               two=[worth_rows("schur-rows", "mix", [5] * 4, 0, 2, t_pr_ms=1)])
         self.assertEqual(problem.base_ms, 4)
         self.assertEqual([problem.best[workers]["auto:schur-rows"].partition for workers in (1, 8)], ["bfs+fm", "mix+fm"])
-        self.assertEqual((problem.speed_up(problem.best[8]["auto:schur-rows"]), problem.measured["auto:schur-rows"].time_ms), (4 / 5, 6))
-        self.assertEqual([partition_worth.fastest(problem.best[workers]) for workers in (1, 64)], [[partition_worth.WHOLE_SYSTEM]] * 2)
+        self.assertEqual((problem.speed_up(problem.best[8]["auto:schur-rows"]), problem.measured["auto:schur-rows"].time_ms),
+                         (4 / 5, 6))
+        self.assertEqual([partition_worth.fastest(problem.best[workers]) for workers in (1, 64)],
+                         [[partition_worth.WHOLE_SYSTEM]] * 2)
 
     def test_times_are_put_at_the_pace_of_the_whole_system_in_the_same_replay(self):
         # The second replay of the first round is half as fast as all others.
@@ -428,7 +459,8 @@ class PartitionWorthAnalysisTest(unittest.TestCase):
         self.assertEqual(cells[partition_worth.WHOLE_SYSTEM].time_ms, 10)
 
     def test_one_solve_that_was_held_up_does_not_make_the_pace(self):
-        one_part = [worth_rows(kernel, "single", [10] * 4, parts=1, interface_rows=0) for kernel in ("schur-rows", "schur-bodies", "schur-nested")]
+        one_part = [worth_rows(kernel, "single", [10] * 4, parts=1, interface_rows=0)
+                    for kernel in ("schur-rows", "schur-bodies", "schur-nested")]
         cells = self.problem(whole_rows([10, 10, 10, 30]), *one_part, worth_rows("schur-rows", "mix", [9] * 4)).best[1]
         self.assertEqual(cells["auto:schur-rows"].told_ms, (9, 9))
 
@@ -437,16 +469,20 @@ class PartitionWorthAnalysisTest(unittest.TestCase):
         apart = worth_rows("schur-bodies", "mix", [4] * 4, parts=2, interface_rows=0)
         cut = worth_rows("schur-rows", "mix", [8] * 4)
         cells = self.problem(one_part, cut).best[1]
-        self.assertEqual({kernel: cell.time_ms for kernel, cell in cells.items()}, {"auto:schur-rows": 8, partition_worth.WHOLE_SYSTEM: 5})
-        self.assertEqual(self.table_row(one_part, cut)[:5], ["8.00 (mix+fm)", "-", "-", "5.00 (schur-rows, single+fm: one part)", "whole system"])
-        self.assertEqual(self.table_row(apart, cut)[3:5], ["4.00 (schur-bodies, mix+fm: 2 parts, 0 interface rows)", "whole system"])
+        self.assertEqual({kernel: cell.time_ms for kernel, cell in cells.items()},
+                         {"auto:schur-rows": 8, partition_worth.WHOLE_SYSTEM: 5})
+        self.assertEqual(self.table_row(one_part, cut)[:5],
+                         ["8.00 (mix+fm)", "-", "-", "5.00 (schur-rows, single+fm: one part)", "whole system"])
+        self.assertEqual(self.table_row(apart, cut)[3:5],
+                         ["4.00 (schur-bodies, mix+fm: 2 parts, 0 interface rows)", "whole system"])
         two = [worth_rows("schur-rows", "single", [5] * 4, threads=2, parts=1, interface_rows=0)]
         self.assertEqual(self.table_row(one_part, cut, two=two)[5], "whole system, 1.00")
 
     def fastest(self, *times):
         """Of kernels with these times beside a whole system that takes 10 ms."""
         kernels = ("schur-rows", "schur-bodies", "schur-nested")
-        found = partition_worth.fastest(self.problem(*(worth_rows(kernel, "mix", of) for kernel, of in zip(kernels, times))).best[1])
+        found = partition_worth.fastest(self.problem(*(worth_rows(kernel, "mix", of)
+                                                       for kernel, of in zip(kernels, times))).best[1])
         return [name.removeprefix("auto:") for name in found]
 
     def test_a_lead_is_one_in_every_even_round_and_of_what_is_first_in_the_odd_ones(self):
@@ -461,8 +497,10 @@ class PartitionWorthAnalysisTest(unittest.TestCase):
         mix = "mix@max-bodies=25"
         with tempfile.TemporaryDirectory() as scratch:
             root = pathlib.Path(scratch)
-            write_csv(root / "partition_worth.csv", whole_rows([10] * 4) + worth_rows("schur-rows", mix, [20, 20, 20, 90], t_pr_ms=0.1)
-                      + worth_rows("schur-bodies", mix, [4] * 4, t_pr_ms=0.1) + worth_rows("schur-nested", mix, [5] * 4, t_pr_ms=1)
+            write_csv(root / "partition_worth.csv", whole_rows([10] * 4)
+                      + worth_rows("schur-rows", mix, [20, 20, 20, 90], t_pr_ms=0.1)
+                      + worth_rows("schur-bodies", mix, [4] * 4, t_pr_ms=0.1)
+                      + worth_rows("schur-nested", mix, [5] * 4, t_pr_ms=1)
                       + worth_rows("schur-rows", "mix@max-bodies=50", [1] * 4, t_pr_ms=9))
             made = worth.partition_share(Stored(root))
         self.assertIn("| s, 9 bodies, 30 rows, cfm 1e-05 | - | 0.5 / 2.5 | - |", made)
@@ -478,36 +516,41 @@ class PartitionWorthAnalysisTest(unittest.TestCase):
         def series(partitioner, t_s_ms, **changes):
             return worth_rows("schur-rows", partitioner, [t_s_ms] * 4, t_pr_ms=1, **changes)
 
-        rows = (series("mix", 9) + series("bfs", 7) + series("semantic@split=whole", 5) + whole_rows([1] * 4) + whole_rows([1] * 4, threads=2) +
+        rows = (series("mix", 9) + series("bfs", 7) + series("semantic@split=whole", 5) +
+                whole_rows([1] * 4) + whole_rows([1] * 4, threads=2) +
                 series("semantic@split=chunks@max-bodies=9", 4) + series("semantic@split=whole", 1, threads=2) +
                 series("single", 3, parts=1, interface_rows=0) + series("mix", 1, scene="t") + whole_rows([1] * 4, scene="t"))
         (key, of_kind), = partition_worth.kinds(rows).items()
         self.assertEqual(key[0][0], "s")
         self.assertEqual({kind: of.time_ms for kind, of in of_kind.items()},
-                         {partition_worth.FOUND: 8, partition_worth.WHOLE: 6, partition_worth.RUNS: 5, partition_worth.UNCUT: 4})
+                         {partition_worth.FOUND: 8, partition_worth.WHOLE: 6, partition_worth.RUNS: 5,
+                          partition_worth.UNCUT: 4})
         self.assertEqual(of_kind[partition_worth.FOUND].partition, "bfs+fm")
         with tempfile.TemporaryDirectory() as scratch:
             write_csv(pathlib.Path(scratch) / "partition_worth.csv", rows)
             made = worth.semantic(Stored(scratch))
-        self.assertIn("| 5.00 (semantic, chunks, 9+fm: 3 parts, 12 interface rows) | 8.00 (bfs+fm: 3 parts, 12 interface rows) | "
-                      "4.00 (single+fm: one part) | nothing cut |", made)
+        self.assertIn("| 5.00 (semantic, chunks, 9+fm: 3 parts, 12 interface rows) | "
+                      "8.00 (bfs+fm: 3 parts, 12 interface rows) | 4.00 (single+fm: one part) | nothing cut |", made)
 
     def test_the_model_of_two_workers_is_held_against_two_threads(self):
         rows = (worth_rows("schur-rows", "mix", [9] * 4, 4) + whole_rows([10] * 4, model_ms=9) +
-                worth_rows("schur-rows", "mix", [6, 4, 4, 10, 10], threads=2) + whole_rows([8, 8, 8, 16, 16], threads=2))  # two at half the pace
+                worth_rows("schur-rows", "mix", [6, 4, 4, 10, 10], threads=2) +
+                whole_rows([8, 8, 8, 16, 16], threads=2))  # two at half the pace
         self.assertEqual([(item.measured_ms, round(item.error, 6), item.slow) for item in partition_worth.model_errors(rows)],
                          [(5, -0.2, True), (8, 0.125, True)])
         with tempfile.TemporaryDirectory() as scratch:
             write_csv(pathlib.Path(scratch) / "partition_worth.csv", rows)
-            self.assertIn("of 2 cells: the model is off by 16.2 % in the median, by 16.2 % of the 2 that take 5 ms and more, and too low in 50 % of all.",
-                          worth.worth(Stored(scratch)))
+            self.assertIn("of 2 cells: the model is off by 16.2 % in the median, by 16.2 % of the 2 that take 5 ms and more, "
+                          "and too low in 50 % of all.", worth.worth(Stored(scratch)))
 
     def test_rows_of_no_rounds_are_no_measurement(self):
         with tempfile.TemporaryDirectory() as scratch:
             write_csv(pathlib.Path(scratch) / "partition_worth.csv",
-                      [{name: value for name, value in row.items() if name not in ("round", "replay")} for row in whole_rows([10])])
+                      [{name: value for name, value in row.items() if name not in ("round", "replay")}
+                       for row in whole_rows([10])])
             for make in (worth.worth, worth.semantic):
-                with self.assertRaisesRegex(NoResults, "tells no noise, as each cell was timed once: `scripts/partition_worth` makes"):
+                with self.assertRaisesRegex(NoResults,
+                                            "tells no noise, as each cell was timed once: `scripts/partition_worth` makes"):
                     make(Stored(scratch))
 
 
@@ -550,7 +593,8 @@ json.dump({"context": {"executable": sys.argv[0], **context}, "benchmarks": [
     for row in rows for pile in piles for time in (2, 2, 50)] + [
     {"name": "rocks_200/mix+fm/repeats:3", "run_name": "rocks_200/mix+fm", "cpu_time": time, "real_time": 3, "bodies": 200,
      "run_type": run_type}
-    for time, run_type in ((1, "iteration"), (2, "iteration"), (9, "iteration"), (0.1, "aggregate"), (0.2, "aggregate"))]}, open(path, "w"))
+    for time, run_type in ((1, "iteration"), (2, "iteration"), (9, "iteration"), (0.1, "aggregate"), (0.2, "aggregate"))
+    ]}, open(path, "w"))
 """
 
 
@@ -570,8 +614,10 @@ class BenchmarkCase(Measurement):
         path = self.directory / "out" / f"{self.program_name}.json"
         path.parent.mkdir()
         path.write_text("earlier")
-        for context, words in (({"git_hash": "f" * 40}, "ffffffffff (local changes: false) and 0123456789 (local changes: false)"),
-                               ({"git_dirty": "true"}, "0123456789 (local changes: true) and 0123456789 (local changes: false)"),
+        for context, words in (({"git_hash": "f" * 40},
+                                "ffffffffff (local changes: false) and 0123456789 (local changes: false)"),
+                               ({"git_dirty": "true"},
+                                "0123456789 (local changes: true) and 0123456789 (local changes: false)"),
                                ({"git_hash": "unknown"}, "unknown (local changes")):
             with unittest.mock.patch.dict(os.environ, STAND_IN_CONTEXT=json.dumps(context)):
                 said = self.run_it(code=1).stderr.splitlines()[-1]

@@ -11,15 +11,17 @@ from cleave_scripts.measurements.model_savings import CASES, savings, standing_t
 
 STAND_IN = NOTES_ITS_CALL + """from synthetic import write_steps
 write_steps(pathlib.Path(given["--out"]), [
-    dict(seed=1, scene=given["--scene"], bodies=9, mu=given.get("--mu", 0.5), step=step, rows=60 * step, model=given["--model"], model_rows_left_out=6,
+    dict(seed=1, scene=given["--scene"], bodies=9, mu=given.get("--mu", 0.5), step=step, rows=60 * step, model=given["--model"],
+         model_rows_left_out=6,
          model_rows_at_rest=3, model_rows_returned=0, model_passes=1, velocity_spread_m_per_s=1e-12, t_s_ms=4, status="ok")
     for step in (0, 1, 2, 299, 300, 3000, 16000)])
 """
 
 
 def row(model, step, t_s_ms, left_out=0, spread=0.0, rows=100):
-    return {"case": "c", "bodies": "9", "mu": "0.5", "model": model, "step": str(step), "rows": str(rows), "t_s_ms": str(t_s_ms),
-            "model_rows_left_out": str(left_out), "model_rows_at_rest": "10", "model_rows_returned": "1", "velocity_spread_m_per_s": str(spread)}
+    return {"case": "c", "bodies": "9", "mu": "0.5", "model": model, "step": str(step), "rows": str(rows),
+            "t_s_ms": str(t_s_ms), "model_rows_left_out": str(left_out), "model_rows_at_rest": "10", "model_rows_returned": "1",
+            "velocity_spread_m_per_s": str(spread)}
 
 
 class SavingsTest(unittest.TestCase):

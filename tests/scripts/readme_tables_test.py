@@ -7,14 +7,17 @@ import unittest
 import stored_data
 from synthetic import ROOT, SCRIPTS, run_script, write_manifest
 
-from cleave_scripts.documents import accuracy, campaigns, cuts, friction, hidden, large, markers, paper_claims, paper_table, peers, sets, speed, stability, worth
+from cleave_scripts.documents import (accuracy, campaigns, cuts, friction, hidden, large, markers, paper_claims, paper_table,
+                                      peers, sets, speed, stability, worth)
 from cleave_scripts.documents.stored import NoResults, Stored
-from cleave_scripts.measurements import coulomb_beside_siconos, extremes_steps, friction_bounds, friction_cost, large_scenes, partition_worth, peer_times, running_simulation
+from cleave_scripts.measurements import (coulomb_beside_siconos, extremes_steps, friction_bounds, friction_cost, large_scenes,
+                                         partition_worth, peer_times, running_simulation)
 from cleave_scripts.measurements.reference_stages import STAGES
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.table import text
 
-DOCUMENTS = ("README.md", "partition/README.md", "solver/README.md", "harness/README.md", "harness/peers/README.md", "results/README.md", "results/table1.md")
+DOCUMENTS = ("README.md", "partition/README.md", "solver/README.md", "harness/README.md", "harness/peers/README.md",
+             "results/README.md", "results/table1.md")
 MEASURED = re.compile(r"\d ?(?:ms|µs|us|%|Gflop/s)\b|\d %")
 
 
@@ -26,12 +29,14 @@ class CheckoutTest(unittest.TestCase):
 
     def test_every_part_stands_in_a_document_and_every_document_has_one(self):
         found = [markers.names((ROOT / name).read_text()) for name in DOCUMENTS]
-        modules = (accuracy, campaigns, cuts, friction, hidden, large, paper_claims, paper_table, peers, sets, speed, stability, worth)
+        modules = (accuracy, campaigns, cuts, friction, hidden, large, paper_claims, paper_table, peers, sets, speed,
+                   stability, worth)
         self.assertEqual(sorted(sum(found, [])), sorted(name for module in modules for name in module.BLOCKS))
         self.assertTrue(all(found))
 
     def test_the_commands_told_are_those_that_remake_the_set(self):
-        commands = {"scripts/" + " ".join(stage.command).partition(" --out ")[0].replace("{report}/", "out/report/").replace(" {report}", "")
+        commands = {"scripts/" + (" ".join(stage.command).partition(" --out ")[0]
+                                  .replace("{report}/", "out/report/").replace(" {report}", ""))
                     for stage in STAGES if stage.runs or stage.files}
         self.assertEqual({command for _, command in sets.SETS.values()}, commands)
 
@@ -65,8 +70,10 @@ class CheckoutTest(unittest.TestCase):
         written = {"extremes.csv": set(extremes_steps.WRITTEN), "running_simulation.csv": set(running_simulation.COLUMNS),
                    "large_scenes.csv": set(large_scenes.COLUMNS), "friction_cost.csv": set(friction_cost.COLUMNS),
                    "friction_bounds.csv": set(friction_bounds.COLUMNS),
-                   "coulomb_peers.csv": set(coulomb_beside_siconos.COLUMNS), "partition_worth.csv": set(partition_worth.COLUMNS), "peer_times.csv": set(peer_times.COLUMNS)}
-        for command in ("two_threads", "modelled_workers", "busy_machine", "idle_cost", "cold_starts", "karger", "partition_over_time", "ablation"):
+                   "coulomb_peers.csv": set(coulomb_beside_siconos.COLUMNS),
+                   "partition_worth.csv": set(partition_worth.COLUMNS), "peer_times.csv": set(peer_times.COLUMNS)}
+        for command in ("two_threads", "modelled_workers", "busy_machine", "idle_cost", "cold_starts", "karger",
+                        "partition_over_time", "ablation"):
             listed = re.search(r"^COLUMNS = \((.*?)\)", (SCRIPTS / command).read_text(), re.M | re.S)[1]
             written[f"{command}.csv"] = set(re.findall(r'"(\w+)"', listed))
         with open(ROOT / "results" / "report" / "verdicts.csv", encoding="utf-8") as file:
@@ -143,13 +150,14 @@ class RewriteTest(unittest.TestCase):
         path = run / "steps.csv"
         path.write_text(path.read_text() + "1,2")
         self.run_it()
-        self.assertIn("results/full/rock_pile/steps.csv: the last line was not finished and is left out; not all steps are there, the state of "
-                      "the run is interrupted\n", self.run_it("--check", code=3))
+        self.assertIn("results/full/rock_pile/steps.csv: the last line was not finished and is left out; "
+                      "not all steps are there, the state of the run is interrupted\n", self.run_it("--check", code=3))
         path.write_text(path.read_text().removesuffix("1,2"))
         for dirty in ("true", "unknown"):
             write_manifest(run, state="complete", build=stored_data.BUILD | {"git_dirty": dirty}, machine=stored_data.MACHINE)
             self.run_it()
-            self.assertEqual(self.run_it("--check", code=3), "results/full: made by a build with local changes or without a commit\n")
+            self.assertEqual(self.run_it("--check", code=3),
+                             "results/full: made by a build with local changes or without a commit\n")
 
     def test_bad_places_are_one_line(self):
         path = self.root / "README.md"
@@ -232,7 +240,8 @@ class BlocksTest(unittest.TestCase):
                       "| 200 | 1e-05 | - (1.60 of 1.60) | 1.00 (2.00 of 2.00) |\n"
                       "| 200 | 1e-10 | 0.75 (1.50 of 2.00) | 0.80 (1.50 of 1.88) |\n", made)
         self.assertIn("| step | least share | below 0.8 | measured | combinations |\n| --- | --- | --- | --- | --- |\n"
-                      "| 100 | `mix+none` 0.90 (1.80 of 2.00) | 0 | 2 | 3 |\n| 300 | `mix+none` 0.90 (1.80 of 2.00) | 0 | 2 | 3 |", made)
+                      "| 100 | `mix+none` 0.90 (1.80 of 2.00) | 0 | 2 | 3 |\n"
+                      "| 300 | `mix+none` 0.90 (1.80 of 2.00) | 0 | 2 | 3 |", made)
         self.assertNotIn("Solvers that iterate", made)
         self.assertIn("Medians of 3 rounds", made)
         self.assertIn("Some CPU, 2 cores, commit 0123456789", made)
@@ -295,12 +304,13 @@ class BlocksTest(unittest.TestCase):
 
     def test_karger(self):
         stored_data.karger(self.root)
-        self.assertIn("| Rock Pile | 40 / 1.00 | 50 / 1.00 | 50 / 1.00 | 45 / 1.00 | 40 / 1.00 | 35 / 1.00 | 20 / 1.00 | 10000 | 100 | 41.0 | 21.0 |",
-                      cuts.karger(self.stored))
+        self.assertIn("| Rock Pile | 40 / 1.00 | 50 / 1.00 | 50 / 1.00 | 45 / 1.00 | 40 / 1.00 | 35 / 1.00 | 20 / 1.00 | "
+                      "10000 | 100 | 41.0 | 21.0 |", cuts.karger(self.stored))
 
     def test_over_time(self):
         stored_data.partition_over_time(self.root)
-        self.assertIn("| rock pile, mix+fm | 0.100 | 4.00, 0.950 (0 / 50 / 50) | 1.00, 1.00 (100 / 0 / 0) |", worth.over_time(self.stored))
+        self.assertIn("| rock pile, mix+fm | 0.100 | 4.00, 0.950 (0 / 50 / 50) | 1.00, 1.00 (100 / 0 / 0) |",
+                      worth.over_time(self.stored))
 
     def test_rows_that_are_missing_are_an_error(self):
         (self.root / "two_threads.csv").write_text("step,t_s_ms\n")

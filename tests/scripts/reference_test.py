@@ -43,10 +43,11 @@ LEFT = {
     "running_simulation": ["running_simulation.csv"], "large_scenes": ["large_scenes.csv"],
     "model_savings": ["model_savings.csv"], "campaign_costs": ["campaign_costs.csv"],
     "friction_cost": ["friction_cost.csv"],
-    "friction_models": ["friction_motion.csv", "friction_velocities.csv", "friction_bounds.csv"], "coulomb_peers": ["coulomb_peers.csv"], "peers": ["peer_times.csv"],
+    "friction_models": ["friction_motion.csv", "friction_velocities.csv", "friction_bounds.csv"],
+    "coulomb_peers": ["coulomb_peers.csv"], "peers": ["peer_times.csv"],
     "hidden_choices": ["hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv", "verdict_map.png"],
-    "tradeoff": ["tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "price_of_accuracy.png", "time_to_accuracy.png", "crossover.png",
-                 "accuracy_profile.png", "tradeoff_motion.png"],
+    "tradeoff": ["tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "price_of_accuracy.png",
+                 "time_to_accuracy.png", "crossover.png", "accuracy_profile.png", "tradeoff_motion.png"],
     "cold_starts": ["cold_starts.csv"], "ablation": ["ablation.csv"], "report": ["figures/verdicts.csv"],
     "readme_figures": ["figure2.png"],
 }
@@ -109,8 +110,9 @@ class ReferenceTest(unittest.TestCase):
         """(what was called, what was said)"""
         self.log.write_text("")
         key = {"git_hash": self.git("rev-parse", "HEAD"), **key}
-        environment = dict(os.environ, CLEAVE_PROGRAM=str(self.directory / "cleave"), CLEAVE_PEERS=str(self.directory / "cleave"), CLEAVE_MUJOCO=str(self.directory / "cleave"), STAND_IN_LOG=str(self.log),
-                           STAND_IN=told, STAND_IN_KEY=json.dumps(key)) | dict(variables)
+        environment = dict(os.environ, CLEAVE_PROGRAM=str(self.directory / "cleave"),
+                           CLEAVE_PEERS=str(self.directory / "cleave"), CLEAVE_MUJOCO=str(self.directory / "cleave"),
+                           STAND_IN_LOG=str(self.log), STAND_IN=told, STAND_IN_KEY=json.dumps(key)) | dict(variables)
         result = run_script("reference", "--root", self.root, env=environment)
         self.assertEqual(result.returncode, code, result.stdout + result.stderr)
         return self.log.read_text().splitlines(), result.stderr
@@ -122,16 +124,22 @@ class ReferenceTest(unittest.TestCase):
     def test_all_is_made_in_order_and_replaces_what_was_there(self):
         calls, said = self.run_it()
         self.assertEqual([call.split()[0] for call in calls], [stage.command[0] for stage in STAGES] + ["readme_tables"])
-        self.assertIn(f"[1/{len(STAGES)}] matrix, about 25 min: scripts/reproduce --measure-every 10 --out out/reference/report", said)
+        self.assertIn(f"[1/{len(STAGES)}] matrix, about 25 min: scripts/reproduce --measure-every 10 "
+                      "--out out/reference/report", said)
         self.assertEqual(self.results(), {
             "README.md", "torture/torture.json", "provenance.json", "extremes.csv", "solver_benchmark.json",
             "partition_benchmark.json",
             "dense_benchmark.json", "busy_machine.csv", "idle_cost.csv",
-            "two_threads.csv", "karger.csv", "partition_over_time.csv", "partition_worth.csv", "partition_worth.png", "partition_regret.csv", "tradeoff.csv", "tradeoff_partitions.csv",
-            "tradeoff_motion.csv", "price_of_accuracy.png", "time_to_accuracy.png", "crossover.png", "accuracy_profile.png", "tradeoff_motion.png", "model_savings.csv", "campaign_costs.csv", "friction_cost.csv", "friction_motion.csv", "friction_velocities.csv", "friction_bounds.csv", "coulomb_peers.csv", "peer_times.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
-            "verdict_map.png", "modelled_workers.csv", "running_simulation.csv", "large_scenes.csv", "cold_starts.csv", "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
+            "two_threads.csv", "karger.csv", "partition_over_time.csv", "partition_worth.csv", "partition_worth.png",
+            "partition_regret.csv", "tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "price_of_accuracy.png",
+            "time_to_accuracy.png", "crossover.png", "accuracy_profile.png", "tradeoff_motion.png", "model_savings.csv",
+            "campaign_costs.csv", "friction_cost.csv", "friction_motion.csv", "friction_velocities.csv", "friction_bounds.csv",
+            "coulomb_peers.csv", "peer_times.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
+            "verdict_map.png", "modelled_workers.csv", "running_simulation.csv", "large_scenes.csv", "cold_starts.csv",
+            "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
             "report/verdicts.csv", *(f"report/{run}/{file}" for run in (
-                "scaling/bodies_50", *(f"{name}/rock_pile" for name in ("one_thread", "schur_bodies", "solvers", "every_step", "karger")))
+                "scaling/bodies_50",
+                *(f"{name}/rock_pile" for name in ("one_thread", "schur_bodies", "solvers", "every_step", "karger")))
                                      for file in ("manifest.json", "steps.csv", "checksums")),
             "figures/figure2.png", *(f"full/{scene}/{file}" for scene in
                                      ("chain_drop", "log_tower", "rock_pile", "large_rock_pile")
@@ -141,8 +149,10 @@ class ReferenceTest(unittest.TestCase):
         self.run_it()
         before = self.results()
         for lost, told in (("tradeoff/crossover.png", "stage tradeoff: .* has no crossover.png; nothing is stored"),
-                           ("report/scaling/cells/bodies_50/steps.csv", "stage report_runs: .* has no steps.csv of scaling/bodies_50; nothing is stored"),
-                           ("report/paper/cells/rock_pile/manifest.json", "stage matrix: .* has no manifest.json of paper/rock_pile; nothing is stored"),
+                           ("report/scaling/cells/bodies_50/steps.csv",
+                            "stage report_runs: .* has no steps.csv of scaling/bodies_50; nothing is stored"),
+                           ("report/paper/cells/rock_pile/manifest.json",
+                            "stage matrix: .* has no manifest.json of paper/rock_pile; nothing is stored"),
                            ("report/paper/index.csv", "stage matrix: .* has no paper/index.csv; nothing is stored")):
             self.git("checkout", "-q", "--", ".")
             self.git("clean", "-q", "-fd")

@@ -9,7 +9,8 @@ from cleave_scripts.measurements import regret  # noqa: E402
 
 def rows_of(times, scene="pile", solver="schur", step=100, replay="one"):
     """times: {(partitioner, refiner): [(t_pr, t_s) a round, from round 1]}; of one step."""
-    return [{"scene": scene, "solver": solver, "step": step, "partitioner": partitioner, "refiner": refiner, "round": number, "replay": replay,
+    return [{"scene": scene, "solver": solver, "step": step, "partitioner": partitioner, "refiner": refiner,
+             "round": number, "replay": replay,
              "t_pr_ms": str(t_pr), "t_s_ms": str(t_s), "auto_choice": "mix+fm/schur-rows" if partitioner == "auto" else "-"}
             for (partitioner, refiner), rounds in times.items() for number, (t_pr, t_s) in enumerate(rounds, 1)]
 

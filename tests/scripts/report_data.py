@@ -9,7 +9,8 @@ from cleave_scripts.results.paper import PARTITIONERS, REFINERS, SCENES, load_pa
 
 PAPER = load_paper_table1()
 STEPS = range(9, 90, 10)
-OF_TRADEOFF = ("price_of_accuracy", "time_to_accuracy", "crossover", "accuracy_profile", "tradeoff_motion")  # figures of another script's tables
+# Figures of another script's tables.
+OF_TRADEOFF = ("price_of_accuracy", "time_to_accuracy", "crossover", "accuracy_profile", "tradeoff_motion")
 STAGES = ("analyze", "factor_local", "factor_interface")
 
 
@@ -85,12 +86,13 @@ def write_claims(directory):
     directory = pathlib.Path(directory)
     directory.mkdir(parents=True, exist_ok=True)
     (directory / CLAIMS_FILE).write_text("claim,row,by,max_bodies,order,holds,fails,cannot_tell\n" + "".join(
-        f"Claim {claim},part,{by},{size},{order},{claim + size // 10},{4 - claim},{claim}\n" for claim in (1, 2) for by in ("cut", "time")
-        for size in (10, 25) for order in ("scene", "random")))
+        f"Claim {claim},part,{by},{size},{order},{claim + size // 10},{4 - claim},{claim}\n"
+        for claim in (1, 2) for by in ("cut", "time") for size in (10, 25) for order in ("scene", "random")))
 
 
 def write_tree(directory):
-    """Four scenes, a two-thread run, three sizes, four solvers in four runs, a ladder, and what hidden choices do to two claims."""
+    """Four scenes, a two-thread run, three sizes, four solvers in four runs, a ladder,
+    and what hidden choices do to two claims."""
     directory = pathlib.Path(directory)
     write_claims(directory)
     for scene in SCENES:
@@ -121,22 +123,24 @@ def write_tree(directory):
 
 def write_motions(directory):
     """A chain that two solvers have moved, one of them in two numbers of sweeps."""
-    lines = ["scene,mover,step,time_s,rows,iterations,residual_m_per_s,max_penetration_m,joint_drift_m,height_m,kinetic_energy_j,potential_energy_j,"
-             "t_s_ms,status,bodies"]
+    lines = ["scene,mover,step,time_s,rows,iterations,residual_m_per_s,max_penetration_m,joint_drift_m,height_m,"
+             "kinetic_energy_j,potential_energy_j,t_s_ms,status,bodies"]
     for mover, t_s_ms, drift_m in (("exact", 1, 1e-4), ('"pgs, 20 sweeps"', 0.5, 2e-3), ('"pgs, 100 sweeps"', 2.5, 3e-4)):
-        lines += [f"chain_drop,{mover},{step},1,900,9,1e-3,1e-4,{drift_m},1.5,0.1,{600 - 1e4 * drift_m},{t_s_ms},ok,100" for step in (9, 19)]
+        lines += [f"chain_drop,{mover},{step},1,900,9,1e-3,1e-4,{drift_m},1.5,0.1,{600 - 1e4 * drift_m},{t_s_ms},ok,100"
+                  for step in (9, 19)]
     (directory / "tradeoff_motion.csv").write_text("\n".join(lines) + "\n")
 
 
 def write_tradeoff(directory):
     """Piles of three sizes, two compliances and two mass ratios."""
-    lines = ["series,scene,bodies,mass_ratio,cfm,step,rows,solver,partitioner,refiner,iterations,residual_m_per_s,largest_free_velocity_m_per_s,"
-             "t_pr_ms,t_s_ms,status"]
+    lines = ["series,scene,bodies,mass_ratio,cfm,step,rows,solver,partitioner,refiner,iterations,residual_m_per_s,"
+             "largest_free_velocity_m_per_s,t_pr_ms,t_s_ms,status"]
     for bodies, mass_ratio, cfm in ((50, 1, 1e-6), (100, 1, 1e-6), (200, 1, 1e-6), (200, 1, 1e-8), (200, 100, 1e-6)):
         pile = f"paper,rock_pile,{bodies},{mass_ratio},{cfm},200,{10 * bodies}"
         lines.append(f"{pile},exact,-,-,9,1e-13,1,nan,{bodies / 50},ok")
         for power in range(1, 6):
-            lines.append(f"{pile},pgs@until=1e-{power}@sweeps=3000,-,-,{10 * power},9e-{power + 1},1,nan,{power * bodies / 100},not_converged")
+            lines.append(f"{pile},pgs@until=1e-{power}@sweeps=3000,-,-,{10 * power},9e-{power + 1},1,nan,"
+                         f"{power * bodies / 100},not_converged")
     (directory / "tradeoff.csv").write_text("\n".join(lines) + "\n")
 
 

@@ -172,7 +172,8 @@ class NewcomersTest(TreeTest):
                          {"ode-quickstep, 200 iterations", "ode-step", "monolithic", "pivot:schur-bodies"})
 
     def test_a_solver_that_splits_nothing_stands_beside_those_on_parts_and_motion_beside_none(self):
-        for name, rows, parts_of in (("parts", rows_of("rock_pile"), ("25", "bodies")), ("whole", whole_system("pgs"), ("-", "-")),
+        for name, rows, parts_of in (("parts", rows_of("rock_pile"), ("25", "bodies")),
+                                     ("whole", whole_system("pgs"), ("-", "-")),
                                      ("motion", rows_of("rock_pile"), ("25", "bodies"))):
             write_run(self.directory / name, [row | dict(zip(("max_bodies", "degree"), parts_of)) for row in rows],
                       **{"record-motion": name == "motion"})

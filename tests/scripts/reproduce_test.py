@@ -25,7 +25,8 @@ rows = matrix(given["--scene"], range(every - 1, int(given["--steps"]), every))
 if code == 2:
     rows[0]["status"] = "not_converged"
 write_steps(given["--out"], rows)
-write_manifest(given["--out"], **stand_in_key.manifest_entries(), state="complete", argv=sys.argv, utc_end="2026-01-01T00:00:00Z",
+write_manifest(given["--out"], **stand_in_key.manifest_entries(), state="complete", argv=sys.argv,
+               utc_end="2026-01-01T00:00:00Z",
                result={{"rows": len(rows), "rows_ok": sum(row["status"] == "ok" for row in rows)}})
 sys.exit(code)
 """
@@ -44,8 +45,8 @@ class ReproduceTest(StandInCase):
         cells = self.cells()
         out = cells[1].pop("--out")
         self.assertEqual(cells[1], {
-            "--scene": "log_tower", "--partitioner": ",".join(PARTITIONERS), "--refiner": ",".join(REFINERS), "--solver": "schur",
-            "--steps": "500", "--measure-every": "50", "--repeats": "3", "--threads": "2", "--seed": "1"})
+            "--scene": "log_tower", "--partitioner": ",".join(PARTITIONERS), "--refiner": ",".join(REFINERS),
+            "--solver": "schur", "--steps": "500", "--measure-every": "50", "--repeats": "3", "--threads": "2", "--seed": "1"})
         self.assertEqual(pathlib.Path(out).parent, self.directory / "out" / "paper" / "cells")
         self.assertEqual([cell["--scene"] for cell in cells], ["chain_drop", "log_tower", "rock_pile", "large_rock_pile"])
         self.assertIn("Large Rock Pile: 10 measured steps", result.stdout)

@@ -16,10 +16,11 @@ from cleave_scripts.results.steps import Row
 STAND_IN = NOTES_ITS_CALL + f"""from synthetic import write_steps
 session = int("--session" in words)
 write_steps(pathlib.Path(given["--out"]), [
-    dict(seed=1, scene=given["--scene"], bodies=9, step=step, session=session, rows=1000 * min(step, 1), solver=solver, t_s_ms=t_s_ms,
-         factorizations=3 - session, factor_reuses=session, cg_iterations=4 * session,
+    dict(seed=1, scene=given["--scene"], bodies=9, step=step, session=session, rows=1000 * min(step, 1), solver=solver,
+         t_s_ms=t_s_ms, factorizations=3 - session, factor_reuses=session, cg_iterations=4 * session,
          status="ok" if solver == "exact" and (step != 7 or not session) else "not_converged")
-    for step in range(int(given["--steps"])) for solver, t_s_ms in (("exact", 2 - session), ("pgs@sweeps={SWEEPS}", {SWEEPS} * 0.04))])
+    for step in range(int(given["--steps"]))
+    for solver, t_s_ms in (("exact", 2 - session), ("pgs@sweeps={SWEEPS}", {SWEEPS} * 0.04))])
 sys.exit(int(os.environ.get("STAND_IN_CODE") or 0) or 2)
 """
 
@@ -33,7 +34,8 @@ class CostTest(unittest.TestCase):
         self.assertEqual((cost.most_sweeps, cost.sums["factorizations"], cost.above), (125, 6, 1))
 
     def test_only_the_last_steps_count_and_those_with_a_row(self):
-        rows = [Row({"scene": "rock_pile", "step": str(step), "solver": solver, "rows": "0" if step == 450 else "9", "t_s_ms": "6"}, "x", 1)
+        rows = [Row({"scene": "rock_pile", "step": str(step), "solver": solver, "rows": "0" if step == 450 else "9",
+                     "t_s_ms": "6"}, "x", 1)
                 for step in range(500) for solver in ("exact", f"pgs@sweeps={SWEEPS}")]
         found = counted_rows(rows, "rock_pile", 500)
         self.assertEqual([int(row["step"]) for row in found], [*range(300, 450), *range(451, 500)])
@@ -51,8 +53,8 @@ class CostTest(unittest.TestCase):
                 for row in stored_data.running_simulation_rows()]
         tower = [row | {"scene": "log_tower"} for row in stored_data.running_simulation_rows(sessions=(1,))]
         told = markdown(stored_data.running_simulation_rows() + silo + tower)
-        self.assertTrue(told.endswith("\n\nWith a session, of what a step takes without one: t_s 1.00 on rock pile and 0.90 on silo; "
-                                      "factorisations 1.00 on rock pile and 0.67 on silo."), told)
+        self.assertTrue(told.endswith("\n\nWith a session, of what a step takes without one: t_s 1.00 on rock pile and 0.90 on "
+                                      "silo; factorisations 1.00 on rock pile and 0.67 on silo."), told)
 
     def test_what_the_readme_says(self):
         root = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
@@ -79,7 +81,8 @@ class RunningSimulationTest(StandInCase):
             rows = list(csv.DictReader(file))
         self.assertEqual((tuple(rows[0]), len(rows)), (COLUMNS, 2 * 3 * len(WAYS) * 19))
         self.assertIn("| rock pile, last 19 steps | anew | 1000 | 2.00 | 40.0 | 50.0 | 87.0 | 50.0 | 57 | 0 | 0 | 0 |", said)
-        self.assertIn("| log tower, last 19 steps | session | 1000 | 1.00 | 40.0 | 25.0 | 43.5 | 25.0 | 38 | 19 | 76 | 2 |", said)
+        self.assertIn("| log tower, last 19 steps | session | 1000 | 1.00 | 40.0 | 25.0 | 43.5 | 25.0 | 38 | 19 | 76 | 2 |",
+                      said)
         self.assertIn("| silo, last 19 steps | session | 1000 | 1.00 |", said)
         self.assertTrue(said.endswith(" t_s 0.50 on rock pile, 0.50 on log tower and 0.50 on silo; "
                                       "factorisations 0.67 on rock pile, 0.67 on log tower and 0.67 on silo.\n"), said)

@@ -47,8 +47,8 @@ class ScalingTest(StandInCase):
         self.assertEqual([int(cell["--bodies"]) for cell in cells], 2 * [50, 100, 400])
         cells[1].pop("--out")
         self.assertEqual(cells[1], {
-            "--scene": "rock_pile", "--bodies": "100", "--partitioner": "mindp,mix", "--refiner": ",".join(REFINERS), "--solver": "schur",
-            "--steps": "20", "--measure-every": "2", "--repeats": "1", "--threads": "2", "--seed": "1"})
+            "--scene": "rock_pile", "--bodies": "100", "--partitioner": "mindp,mix", "--refiner": ",".join(REFINERS),
+            "--solver": "schur", "--steps": "20", "--measure-every": "2", "--repeats": "1", "--threads": "2", "--seed": "1"})
         groups = times_by_size.sizes(data.load(self.directory / "out", "schur").blocks, "schur")
         self.assertEqual({size: len(rounds) for size, rounds in groups.items()}, {50: 2, 100: 2, 400: 2})
         means = [parts[0].rows["t_s_ms"].mean() for parts in groups.values()]
@@ -73,10 +73,9 @@ class ScalingTest(StandInCase):
 
     def test_bad_options_are_one_line_before_anything_runs(self):
         self.check_refused((["--sizes", "50,many"], "--sizes has 'many'"),
-                                 (["--sizes",
-                                   ""], "--sizes has '', expected a whole number"), (["--steps", "5", "--measure-every",
-                                                                    "6"], "--measure-every is '6', expected at most --steps, 5"),
-                                 (["--seed", "x"], "--seed is 'x'"), (["--fast"], "unknown option '--fast'"))
+                           (["--sizes", ""], "--sizes has '', expected a whole number"),
+                           (["--steps", "5", "--measure-every", "6"], "--measure-every is '6', expected at most --steps, 5"),
+                           (["--seed", "x"], "--seed is 'x'"), (["--fast"], "unknown option '--fast'"))
 
 
 if __name__ == "__main__":

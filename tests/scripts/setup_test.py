@@ -99,7 +99,8 @@ class SetupTest(StandInTest):
         installs = [line for line in self.log() if " install " in line]
         clang = ["clang", "libclang-rt-14-dev", "llvm-14", "libomp-14-dev"]
         peers = ["libbullet-dev", "libdart-dev", "libsiconos-numerics-dev", "coinor-libipopt-dev", "libmujoco-dev"]
-        self.assertEqual([[word for word in install.split()[2:] if word[0] != "-"] for install in installs], [clang, clang, peers])
+        self.assertEqual([[word for word in install.split()[2:] if word[0] != "-"] for install in installs],
+                         [clang, clang, peers])
 
     def test_what_another_package_provides_is_there(self):
         self.install([name for name in self.packages if name not in ("npm", "cmake")] + ["node, npm, cmake (= 3)"])

@@ -1,4 +1,5 @@
-"""A Slurm of its own for a test: two nodes of one core on this host, daemons, ports, key and files of their own, gone at the end."""
+"""A Slurm of its own for a test: two nodes of one core on this host, daemons, ports, key and files of their own,
+gone at the end."""
 import contextlib
 import ctypes
 import getpass
@@ -122,8 +123,8 @@ class Cluster:
         key.touch(0o600)
         key.write_bytes(secrets.token_bytes(256))
         (self.root / "slurm.conf").write_text(
-            CONFIG.format(root=self.root, host=socket.gethostname().partition(".")[0], user=getpass.getuser(), nodes=",".join(NODES),
-                          ports=free_ports(3)))
+            CONFIG.format(root=self.root, host=socket.gethostname().partition(".")[0], user=getpass.getuser(),
+                          nodes=",".join(NODES), ports=free_ports(3)))
 
     def _start_munge(self):
         place = self.root / "munge.socket"
@@ -156,5 +157,6 @@ class Cluster:
 
     def end_of(self, number):
         """Its exit code as "0:0", once it has ended."""
-        until(f"job {number} has ended", lambda: self.job(number)["JobState"] in ("COMPLETED", "FAILED", "CANCELLED", "NODE_FAIL"))
+        until(f"job {number} has ended",
+              lambda: self.job(number)["JobState"] in ("COMPLETED", "FAILED", "CANCELLED", "NODE_FAIL"))
         return self.job(number)["ExitCode"]

@@ -72,7 +72,8 @@ class SlurmTest(unittest.TestCase):
         return [self.out / "cells" / row["cell"] for row in read_rows(index)] if index.exists() else []
 
     def kill_in_the_middle(self, array, task):
-        """All processes of a task that has done its first cell and runs its second; then its node seems to have been another."""
+        """All processes of a task that has done its first cell and runs its second;
+        then its node seems to have been another."""
         cells = until("the task runs", lambda: self.cells_of(task))
         until("its second cell runs", lambda: (cells[0] / "checksums").exists() and (cells[1] / "steps.csv").exists())
         lock = self.share(task) / "cleave.lock"
@@ -161,7 +162,8 @@ class CommandLineTest(unittest.TestCase):
                    env=os.environ | {"CLEAVE_PROGRAM": PROGRAM} | environment)
 
     def test_a_dry_run_writes_the_jobs_and_prints_the_commands(self):
-        array, merge = map(shlex.split, self.submit("--tasks", 3, "--dry-run", "--", "--time=1:00", "-p", "long").stdout.splitlines())
+        array, merge = map(shlex.split,
+                           self.submit("--tasks", 3, "--dry-run", "--", "--time=1:00", "-p", "long").stdout.splitlines())
         for command in (array, merge):
             self.assertEqual(command[0], "sbatch")
             self.assertIn("--time=1:00", command)

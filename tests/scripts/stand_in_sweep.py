@@ -1,4 +1,5 @@
-"""`cleave sweep` for stand-ins: the cells of a campaign as the program itself expands them, each run by the stand-in as `cleave run`.
+"""`cleave sweep` for stand-ins: the cells of a campaign as the program itself expands them,
+each run by the stand-in as `cleave run`.
 
 STAND_IN_REAL in the environment is the program. A cell that ended with exit code 0 or 2 is kept when the campaign is run again.
 """

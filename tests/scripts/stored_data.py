@@ -53,25 +53,28 @@ def two_threads(root):
 
 def running_simulation_rows(sessions=(0, 1)):
     """The third round is slow, and one of its solves misses the limit."""
-    return [{"scene": "rock_pile", "bodies": 200, "step": step, "session": session, "round": number, "rows": 1000 * step, "factorizations": 3,
-             "factor_reuses": 1, "cg_iterations": 2, "t_s_ms": t_s_ms if number < 3 else 50, "sweep_ms": 0.02 * step if number < 3 else 9,
-             "status": "not_converged" if (number, step) == (3, 2) else "ok"}
+    return [{"scene": "rock_pile", "bodies": 200, "step": step, "session": session, "round": number, "rows": 1000 * step,
+             "factorizations": 3, "factor_reuses": 1, "cg_iterations": 2, "t_s_ms": t_s_ms if number < 3 else 50,
+             "sweep_ms": 0.02 * step if number < 3 else 9, "status": "not_converged" if (number, step) == (3, 2) else "ok"}
             for session in sessions for number in (1, 2, 3) for step, t_s_ms in ((1, 1), (2, 5))]
 
 
 # Scene, bodies, threads: rows, factorisations, t_s in ms.
-LARGE = {("rock_pile", 10000, 1): (100000, 5, 850), ("rock_pile", 100000, 1): (1000000, 10, 28900), ("rock_pile", 10000, 2): (100000, 5, 500), ("rock_pile", 100000, 2): (1000000, 10, 15000),
+LARGE = {("rock_pile", 10000, 1): (100000, 5, 850), ("rock_pile", 100000, 1): (1000000, 10, 28900),
+         ("rock_pile", 10000, 2): (100000, 5, 500), ("rock_pile", 100000, 2): (1000000, 10, 15000),
          ("silo", 10000, 1): (300000, 4, 900), ("silo", 10000, 2): (300000, 4, 600)}
 
 
 def large_scenes_rows():
-    """Everything takes ten times as long in the third round, dense factorisations too; a sweep takes a millisecond of every 10000 rocks."""
+    """Everything takes ten times as long in the third round, dense factorisations too;
+    a sweep takes a millisecond of every 10000 rocks."""
     exact = {(*key, "exact"): found for key, found in LARGE.items()}
     swept = {("rock_pile", bodies, 1, "pgs@sweeps=300"): (10 * bodies, 0, 0.03 * bodies) for bodies in (10000, 100000)}
-    return [{"scene": scene, "bodies": bodies, "solver": solver, "threads": threads, "round": number, "rows": rows, "factorizations": factorizations,
-             "kinetic_energy_j": 200, "t_s_ms": t_s_ms * slow, "t_s_waiting_ms": 0.05 * t_s_ms * slow, "t_s_factor_local_ms": 100 * slow / threads, "factor_mflop_local": 1100,
-             "factor_mflop_done": 4000, "dissection_mflop": 1000 if scene == "silo" else "nan", "dense_gflop_per_s": 50 * threads / slow,
-             "peak_memory_mb": 2 * bodies / 100 + number}
+    return [{"scene": scene, "bodies": bodies, "solver": solver, "threads": threads, "round": number,
+             "rows": rows, "factorizations": factorizations, "kinetic_energy_j": 200, "t_s_ms": t_s_ms * slow,
+             "t_s_waiting_ms": 0.05 * t_s_ms * slow, "t_s_factor_local_ms": 100 * slow / threads, "factor_mflop_local": 1100,
+             "factor_mflop_done": 4000, "dissection_mflop": 1000 if scene == "silo" else "nan",
+             "dense_gflop_per_s": 50 * threads / slow, "peak_memory_mb": 2 * bodies / 100 + number}
             for number, slow in ((1, 1), (2, 1), (3, 10))
             for (scene, bodies, threads, solver), (rows, factorizations, t_s_ms) in (exact | swept).items()]
 
@@ -126,8 +129,8 @@ def karger(root):
 def partition_over_time(root):
     """on-change takes a quarter of the time for 19/20 of the rows; all other rules do as always."""
     rows = [{"scene": "rock_pile", "step": step, "partitioner": "mix", "refiner": "fm", "repartition": rule,
-             "partition_origin": "fresh" if rule != "on-change" else origin, "interface_rows": 95 if rule == "on-change" else 100,
-             "t_pr_ms": 0.25 if rule == "on-change" else 1, "t_s_ms": 10}
+             "partition_origin": "fresh" if rule != "on-change" else origin,
+             "interface_rows": 95 if rule == "on-change" else 100, "t_pr_ms": 0.25 if rule == "on-change" else 1, "t_s_ms": 10}
             for step, origin in ((1, "repaired"), (2, "kept"))
             for rule in ("always", "on-change", "every:5", "every:20", "drift:0.05", "drift:0.2")]
     write_csv(root / "partition_over_time.csv", rows)
@@ -135,11 +138,13 @@ def partition_over_time(root):
 
 def partition_benchmark(root):
     """Own rows are 4/5 of METIS's, those of scotch do not count."""
-    names = {"mindp+none": 500, "multilevel@effort=best+none": 400, "multilevel@effort=fast+none": 510, "mindp@merge-small=true+fm": 550,
-             "mix@merge-small=true+fm": 600, "metis-recursive+none": 500, "scotch+none": None}
-    entries = [{"name": f"{graph}/{name}", "cpu_time": (100 if "metis" in name else 12.345) * bodies, "bodies": bodies, "edges": 353}
+    names = {"mindp+none": 500, "multilevel@effort=best+none": 400, "multilevel@effort=fast+none": 510,
+             "mindp@merge-small=true+fm": 550, "mix@merge-small=true+fm": 600, "metis-recursive+none": 500, "scotch+none": None}
+    entries = [{"name": f"{graph}/{name}", "cpu_time": (100 if "metis" in name else 12.345) * bodies, "bodies": bodies,
+                "edges": 353}
                | ({} if rows is None else {"interface_rows": rows + (100 if name == "mindp+none" and bodies == 200 else 0)})
-               for graph, bodies in (("pile_200", 200), ("pile_1000", 1000), ("pile_100000", 100000)) for name, rows in names.items()]
+               for graph, bodies in (("pile_200", 200), ("pile_1000", 1000), ("pile_100000", 100000))
+               for name, rows in names.items()]
     (root / "partition_benchmark.json").write_text(json.dumps({"benchmarks": entries}))
 
 

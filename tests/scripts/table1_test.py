@@ -205,8 +205,9 @@ class ComparisonTest(Table1Test):
             self.assertIn(f"mix {column} ", self.table(code=1))
 
     def test_a_solver_that_hands_over_stays_one_solver(self):
-        write_steps(self.directory, [row | {"strategy": name, "kernel": name} for name, step in (("pivot", 0), ("interior-point", 50))
-                                     for row in matrix("rock_pile", [step])])
+        write_steps(self.directory,
+                    [row | {"strategy": name, "kernel": name} for name, step in (("pivot", 0), ("interior-point", 50))
+                     for row in matrix("rock_pile", [step])])
         # As manifests of some builds have it; what ran at the end is measured.
         write_manifest(self.directory, columns=[{"name": name, "about": "solver"} for name in ("strategy", "kernel")])
         self.assertIn("Rock Pile: 2 measured steps", self.table())

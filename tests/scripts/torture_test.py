@@ -274,7 +274,8 @@ class FindingsTest(unittest.TestCase):
     def test_what_repeats_a_finding_is_a_whole_command_and_leaves_what_was_found(self):
         with tempfile.TemporaryDirectory() as scratch:
             out, trial = pathlib.Path(scratch) / "some out", types.SimpleNamespace(
-                kind="flips", number=7, seed=3, log=["$ cleave verify x"], findings=[Finding("a fault", "")], directory=pathlib.Path(scratch) / "trial")
+                kind="flips", number=7, seed=3, log=["$ cleave verify x"], findings=[Finding("a fault", "")],
+                directory=pathlib.Path(scratch) / "trial")
             trial.directory.mkdir()
             (trial.directory / "input").touch()
             out.mkdir()
@@ -282,7 +283,8 @@ class FindingsTest(unittest.TestCase):
             how = out / "findings" / "flips-7" / "how.txt"
             words = shlex.split(how.read_text().splitlines()[0])
             given = dict(zip(words[1::2], words[2::2]))
-            self.assertEqual({name: given.pop(name) for name in ("--trials", "--seed", "--only")}, {"--trials": "flips", "--seed": "3", "--only": "7"})
+            self.assertEqual({name: given.pop(name) for name in ("--trials", "--seed", "--only")},
+                             {"--trials": "flips", "--seed": "3", "--only": "7"})
             self.assertEqual(set(given), {"--minutes", "--out"})
             Keeper(pathlib.Path(given["--out"]))
             self.assertTrue(how.exists() and (out / "findings.jsonl").exists())

@@ -13,8 +13,8 @@ from cleave_scripts.documents.stored import NoResults, Stored
 from cleave_scripts.figures import motion_of_solvers as motion_figure, price_of_accuracy, style, time_to_accuracy
 from cleave_scripts.figures.tree import NoData
 from cleave_scripts.measurements import crossover, partitions_of_solvers
-from cleave_scripts.measurements.accuracy import (COLUMNS, LIMITS, failures, method_of, of_whole_steps, problems, profile, refusals, settled_piles,
-                                                  sweep_costs, threads_in_words)
+from cleave_scripts.measurements.accuracy import (COLUMNS, LIMITS, failures, method_of, of_whole_steps, problems, profile,
+                                                  refusals, settled_piles, sweep_costs, threads_in_words)
 from cleave_scripts.measurements.motion_of_solvers import CASES, EXACT_AS_WELL, MOVERS, OF_FEW_ROWS, OF_SMALL, SMALL, motions
 
 STAND_IN = NOTES_ITS_CALL + f"""import h5py
@@ -27,15 +27,18 @@ if words[0] == "record":
         file.attrs["words"] = " ".join(words)
         file["mass"] = numpy.tile(numpy.eye(6), (3, 1, 1)) * numpy.array([1, 3, 2])[:, None, None]
     sys.exit(0)
-same = dict(seed=1, bodies=given.get("--bodies", 200), rows=900, iterations=7, largest_free_velocity_m_per_s=2, t_pr_ms=0.5, interface_rows=9, residual_m_per_s=1e-12,
-            status="ok", threads=given.get("--threads", 1), max_penetration_m=1e-3, joint_drift_m=0, kinetic_energy_j=1, potential_energy_j=2, t_s_ms=4, partitioner="-", refiner="-")
+same = dict(seed=1, bodies=given.get("--bodies", 200), rows=900, iterations=7, largest_free_velocity_m_per_s=2, t_pr_ms=0.5,
+            interface_rows=9, residual_m_per_s=1e-12, status="ok",
+            threads=given.get("--threads", 1), max_penetration_m=1e-3, joint_drift_m=0, kinetic_energy_j=1,
+            potential_energy_j=2, t_s_ms=4, partitioner="-", refiner="-")
 if words[0] == "run":
     every = int(given["--measure-every"])
     measured = range(every - 1, int(given["--steps"]), every)
     with h5py.File(out / "motion.h5", "w") as file:
         file["step"], file["mass"] = numpy.array(measured), numpy.ones(2)
         file["position"] = numpy.array([[[0, 0, 1], [0, 0, step + 0.5]] for step in measured])
-    write_steps(out, [dict(same, scene=given["--scene"], step=step, time_s=step / 60, solver=solver, cfm=given.get("--cfm", 1e-5))
+    write_steps(out, [dict(same, scene=given["--scene"], step=step, time_s=step / 60, solver=solver,
+                           cfm=given.get("--cfm", 1e-5))
                       for step in measured for solver in given["--solver"].split(",")])
     sys.exit(2 if "pgs" in given["--solver"] else 0)
 with h5py.File(words[1]) as file:
@@ -45,9 +48,11 @@ rows = []
 for solver in given["--solver"].split(","):
     until = float(solver.partition("@until=")[2].partition("@")[0] or 0)
     gives_up = until and until < (0.02 if solver.startswith("pgs-colored") else 0.002)
-    rows.append(dict(same, scene=asked["--scene"], bodies=asked.get("--bodies", 200), cfm=asked["--cfm"], step=asked["--at"], solver=solver,
+    rows.append(dict(same, scene=asked["--scene"], bodies=asked.get("--bodies", 200), cfm=asked["--cfm"], step=asked["--at"],
+                     solver=solver,
                      iterations=3000 if gives_up else 7,
-                     residual_m_per_s=1 if gives_up else until or 1e-12, t_s_ms=0.1 / until if until else 4, status="not_converged" if until else "ok"))
+                     residual_m_per_s=1 if gives_up else until or 1e-12, t_s_ms=0.1 / until if until else 4,
+                     status="not_converged" if until else "ok"))
 write_steps(out, rows)
 write_manifest(out)
 sys.exit(2)
@@ -55,7 +60,8 @@ sys.exit(2)
 
 
 def row(solver, t_s_ms, residual, partitioner="-", fastest=1.0, step=1):
-    return {"series": "paper", "scene": "s", "bodies": "9", "mass_ratio": "1", "cfm": "1e-5", "step": str(step), "rows": "50", "solver": solver, "partitioner": partitioner,
+    return {"series": "paper", "scene": "s", "bodies": "9", "mass_ratio": "1", "cfm": "1e-5", "step": str(step),
+            "rows": "50", "solver": solver, "partitioner": partitioner,
             "refiner": "-" if partitioner == "-" else "fm", "t_pr_ms": "1", "t_s_ms": str(t_s_ms), "iterations": "200",
             "residual_m_per_s": str(residual), "largest_free_velocity_m_per_s": str(fastest), "status": "ok"}
 
@@ -106,7 +112,8 @@ class AccuracyTest(unittest.TestCase):
 
     def test_axes_hold_the_piles_of_which_one_thing_changes(self):
         def pile(bodies, mass_ratio, cfm, rows, scene="rock_pile"):
-            return {**row("exact", 1, 1e-12), "scene": scene, "bodies": str(bodies), "mass_ratio": str(mass_ratio), "cfm": cfm, "rows": str(rows)}
+            return {**row("exact", 1, 1e-12), "scene": scene, "bodies": str(bodies), "mass_ratio": str(mass_ratio), "cfm": cfm,
+                    "rows": str(rows)}
 
         found = problems([pile(200, 1, "1e-6", 9), pile(50, 1, "1e-6", 5), pile(200, 1, "1e-8", 8), pile(200, 100, "1e-6", 7),
                           pile(50, 1, "1e-8", 3), pile(200, 1, "1e-6", 2, "silo")])
@@ -114,7 +121,8 @@ class AccuracyTest(unittest.TestCase):
                          [[5, 9], [1, 100], [1e-8, 1e-6]])
         at_rest = problems([{**pile(200, 1, "1e-6", 9), "series": "settled"}])
         self.assertEqual([axis.problems(at_rest) for axis in crossover.AXES], [[], [], []])
-        figure = time_to_accuracy.draw_crossover(problems([pile(200, 1, "1e-6", 9), {**pile(200, 1, "1e-6", 9), "solver": "pgs@until=0.1"}]))
+        figure = time_to_accuracy.draw_crossover(problems([pile(200, 1, "1e-6", 9),
+                                                           {**pile(200, 1, "1e-6", 9), "solver": "pgs@until=0.1"}]))
         self.assertEqual([len(ax.lines) for ax in figure.axes], [len(crossover.LIMITS) + 1] * 3)
         self.assertIn("$t_{pr} + t_s$ (above 1", figure.axes[0].get_ylabel())
         style.pyplot.close(figure)
@@ -125,14 +133,16 @@ class AccuracyTest(unittest.TestCase):
         self.assertEqual(problem.against_exact(0.1), 0.25)
 
     def test_profiles_are_ratios_to_the_fastest_with_failures_told(self):
-        found = problems([row("exact", 4, 1e-12), row("pgs", 1, 1e-2), row("exact", 2, 1e-12, step=2), row("pgs", 8, 1, step=2)])
+        found = problems([row("exact", 4, 1e-12), row("pgs", 1, 1e-2), row("exact", 2, 1e-12, step=2),
+                          row("pgs", 8, 1, step=2)])
         self.assertEqual(profile(found, 1e-2), {"exact": [1, 4], "pgs": [1, math.inf]})
         self.assertEqual({method: failures(found, method, 1e-8) for method in profile(found, 1e-8)}, {"exact": 0, "pgs": 2})
         self.assertEqual(profile(problems([row("pgs", 1, 1)]), 1e-8), {})
 
     def test_a_solver_that_refuses_a_step_has_not_failed_on_it(self):
         refused = {**row("ode-step@ode-step-max-rows=1200", "nan", "nan"), "status": "refused"}
-        found = problems([row("exact", 4, 1e-12), refused, row("exact", 4, 1e-12, step=2), row("ode-step@ode-step-max-rows=1200", 9, 1, step=2)])
+        found = problems([row("exact", 4, 1e-12), refused, row("exact", 4, 1e-12, step=2),
+                          row("ode-step@ode-step-max-rows=1200", 9, 1, step=2)])
         self.assertEqual([problem.refused for problem in found], [("ode-step",), ()])
         self.assertEqual((failures(found, "ode-step", 1e-8), refusals(found, "ode-step"), refusals(found, "exact")), (1, 1, 0))
         self.assertEqual(profile(found, 1e-8)["ode-step"], [math.inf, math.inf])
@@ -142,7 +152,8 @@ class AccuracyTest(unittest.TestCase):
         self.assertEqual(texts, ["exact (never: 0/0/0/0)", "ode-step (never: 1/1/1/1; refused: 1)"])
 
     def test_a_step_is_whole_where_every_solver_has_come_to_its_least_limit_or_given_up(self):
-        whole = [row("exact", 4, 1e-12), row("pgs@until=0.1", 1, 0.09), row("pgs@until=0.01", 1, 0.009), row("apgd@until=0.1", 1, 0.2),
+        whole = [row("exact", 4, 1e-12), row("pgs@until=0.1", 1, 0.09), row("pgs@until=0.01", 1, 0.009),
+                 row("apgd@until=0.1", 1, 0.2),
                  row("ode-quickstep@quickstep-iterations=20", 1, 1), row("ode-quickstep@quickstep-iterations=500", 1, 1)]
         other = [{**line, "step": "2"} for line in whole]
         self.assertEqual(of_whole_steps(whole + other), whole + other)
@@ -164,7 +175,8 @@ class AccuracyTest(unittest.TestCase):
         self.assertEqual(settled_piles(found)[0].title, "s, 9 bodies, 50 rows, cfm 1e-05, settled")
 
     def test_the_pictures_hold_every_problem_and_name_failures(self):
-        found = problems([row("exact", 4, 1e-12), row("pgs", 1, 1e-2), row("exact", 2, 1e-12, step=2), row("pgs", 8, 1, step=2)])
+        found = problems([row("exact", 4, 1e-12), row("pgs", 1, 1e-2), row("exact", 2, 1e-12, step=2),
+                          row("pgs", 8, 1, step=2)])
         figure = time_to_accuracy.draw_times(found)
         self.assertEqual(len(figure.axes), 2)
         style.pyplot.close(figure)
@@ -180,10 +192,13 @@ class PriceTest(unittest.TestCase):
         """Two of the panels, one of them settled too, which is not drawn."""
         def of(scene, bodies, cfm, series="paper"):
             key = {"scene": scene, "bodies": str(bodies), "cfm": cfm, "series": series}
-            return [{**line, **key} for line in (row("exact", 4, 1e-12), row("schur", 4.1, 1e-12, "mix"), {**row("lemke", "nan", "nan"), "status": "refused"},
-                                                 row("newton:monolithic", 4, 1), row("pgs@until=0.1", 1, 0.09), row("pgs@until=0.01@order=random", 2, 0.009))]
+            return [{**line, **key} for line in (row("exact", 4, 1e-12), row("schur", 4.1, 1e-12, "mix"),
+                                                 {**row("lemke", "nan", "nan"), "status": "refused"},
+                                                 row("newton:monolithic", 4, 1), row("pgs@until=0.1", 1, 0.09),
+                                                 row("pgs@until=0.01@order=random", 2, 0.009))]
 
-        return problems(of("crane", 124, "1e-10") + of("rock_pile", 200, "1e-4") + of("rock_pile", 200, "1e-4", "settled") + of("silo", 200, "1e-4"))
+        return problems(of("crane", 124, "1e-10") + of("rock_pile", 200, "1e-4") + of("rock_pile", 200, "1e-4", "settled") +
+                        of("silo", 200, "1e-4"))
 
     def test_every_solver_is_drawn_or_named(self):
         found = self.problems()
@@ -210,13 +225,15 @@ class PriceTest(unittest.TestCase):
 
 def split_row(solver, parts, t_s_ms, iterations=1, residual=1e-12, step=1, threads=None):
     told = {} if threads is None else {"threads": str(threads)}
-    return {**row(solver, t_s_ms, residual, step=step), "partitioner": parts, "refiner": "fm", "t_pr_ms": "1", "iterations": str(iterations), **told}
+    return {**row(solver, t_s_ms, residual, step=step), "partitioner": parts, "refiner": "fm", "t_pr_ms": "1",
+            "iterations": str(iterations), **told}
 
 
 class PartitionsOfSolversTest(unittest.TestCase):
-    rows = [split_row("schur", "mix", 1), split_row("schur", "bfs", 3), split_row("schur", "mix", 1, step=2), split_row("schur", "bfs", 1, step=2),
-            split_row("pgs-parts@until=0.0001", "mix", 3, 40), split_row("pgs-parts@until=0.0001", "bfs", 1, 10),
-            split_row("pgs-parts@until=0.0001", "mix", 1, 10, step=2), split_row("pgs-parts@until=0.0001", "bfs", 1, 10, 1e-3, step=2)]
+    rows = [split_row("schur", "mix", 1), split_row("schur", "bfs", 3), split_row("schur", "mix", 1, step=2),
+            split_row("schur", "bfs", 1, step=2), split_row("pgs-parts@until=0.0001", "mix", 3, 40),
+            split_row("pgs-parts@until=0.0001", "bfs", 1, 10), split_row("pgs-parts@until=0.0001", "mix", 1, 10, step=2),
+            split_row("pgs-parts@until=0.0001", "bfs", 1, 10, 1e-3, step=2)]
 
     def test_ratios_to_the_best_partition_are_averaged_over_problems(self):
         found = partitions_of_solvers.compare(self.rows)
@@ -232,18 +249,21 @@ class PartitionsOfSolversTest(unittest.TestCase):
 
     def test_ranks(self):
         def compared(one, other):
-            return {"a": {key: (value, 0) for key, value in enumerate(one)}, "b": {key: (value, 0) for key, value in enumerate(other)}}
+            return {"a": {key: (value, 0) for key, value in enumerate(one)},
+                    "b": {key: (value, 0) for key, value in enumerate(other)}}
 
         self.assertAlmostEqual(partitions_of_solvers.ranks_agree(compared([1, 2, 3], [10, 20, math.inf]), "a", "b"), 1)
         self.assertAlmostEqual(partitions_of_solvers.ranks_agree(compared([1, 2, 3], [9, 8, 7]), "a", "b"), -1)
-        self.assertAlmostEqual(partitions_of_solvers.ranks_agree(compared([1, 2, 3, 4], [1, 1, 2, 2]), "a", "b"), 2 / math.sqrt(5))
+        self.assertAlmostEqual(partitions_of_solvers.ranks_agree(compared([1, 2, 3, 4], [1, 1, 2, 2]), "a", "b"),
+                               2 / math.sqrt(5))
 
     def on_two_threads(self):
         """One part takes 8 ms on one thread, mix 10; on two mix takes 4 and 6, one part 8."""
         until = "pgs-parts@until=0.0001"
         rows = [split_row("schur", "mix", 1, threads=1), {**split_row("schur", "single", 2, threads=1), "refiner": "none"}]
         for step in (1, 2):
-            rows += [split_row(until, "mix", 9, 10, step=step, threads=1), split_row(until, "mix", 2 * step + 1, 10, step=step, threads=2)]
+            rows += [split_row(until, "mix", 9, 10, step=step, threads=1),
+                     split_row(until, "mix", 2 * step + 1, 10, step=step, threads=2)]
             rows += [{**split_row(until, "single", 7, 10, step=step, threads=threads), "refiner": "none"} for threads in (1, 2)]
         return rows
 
@@ -260,9 +280,9 @@ class PartitionsOfSolversTest(unittest.TestCase):
 
 def moved_row(scene, mover, step, bodies=None, t_s_ms=1, height_m=2.0, drift_m=0.0, potential_j=3.0):
     told = {} if bodies is None else {"bodies": str(bodies)}
-    return {"scene": scene, "mover": mover, "step": str(step), "time_s": "1", "rows": "9", "iterations": "1", "residual_m_per_s": "1e-3", "max_penetration_m": "0.002",
-            "joint_drift_m": str(drift_m), "height_m": str(height_m), "kinetic_energy_j": "5", "potential_energy_j": str(potential_j), "t_s_ms": str(t_s_ms),
-            "status": "ok", **told}
+    return {"scene": scene, "mover": mover, "step": str(step), "time_s": "1", "rows": "9", "iterations": "1",
+            "residual_m_per_s": "1e-3", "max_penetration_m": "0.002", "joint_drift_m": str(drift_m), "height_m": str(height_m),
+            "kinetic_energy_j": "5", "potential_energy_j": str(potential_j), "t_s_ms": str(t_s_ms), "status": "ok", **told}
 
 
 class MotionTest(unittest.TestCase):
@@ -270,10 +290,12 @@ class MotionTest(unittest.TestCase):
                   for mover in ("exact", "lemke", "ode-quickstep, 20 substeps of 1") for step in (1, 2)]
 
     def test_a_motion_is_a_scene_of_a_size_and_a_mover(self):
-        found = motions([moved_row("chain_drop", "pgs, 20 sweeps", 1, 100, t_s_ms=1), moved_row("chain_drop", "pgs, 20 sweeps", 2, 100, t_s_ms=4),
+        found = motions([moved_row("chain_drop", "pgs, 20 sweeps", 1, 100, t_s_ms=1),
+                         moved_row("chain_drop", "pgs, 20 sweeps", 2, 100, t_s_ms=4),
                          *self.small_rows, moved_row("rock_pile", "exact", 1)])
         self.assertEqual([(of.title, of.family) for of in found],
-                         [("chain drop, 100 bodies", "pgs"), ("rock pile, 25 bodies", "exact"), ("rock pile, 25 bodies", "lemke"),
+                         [("chain drop, 100 bodies", "pgs"), ("rock pile, 25 bodies", "exact"),
+                          ("rock pile, 25 bodies", "lemke"),
                           ("rock pile, 25 bodies", "ode-quickstep, small steps"), ("rock pile", "exact")])
         self.assertEqual([(of.mean_ms, of.step_ms) for of in found], [(2.5, 2.5), (1, 1), (1, 1), (1, 20), (1, 1)])
         self.assertEqual(found[0].mean_later("t_s_ms"), 4)
@@ -289,10 +311,12 @@ class MotionTest(unittest.TestCase):
         found = motions([*(moved_row("chain_drop", mover, 1, 100, drift_m=0.001, potential_j=potential) for mover, potential in
                            (("exact", 3.0), ("pgs, 20 sweeps", 6.0), ("pgs, 100 sweeps", 4.5))), *self.small_rows])
         figure = motion_figure.draw_motions(found)
-        self.assertEqual([ax.get_ylabel() for ax in figure.axes], ["joint drift, mm", "height over exact's", "penetration, mm", "height over exact's"])
+        self.assertEqual([ax.get_ylabel() for ax in figure.axes],
+                         ["joint drift, mm", "height over exact's", "penetration, mm", "height over exact's"])
         pgs, = [line for line in figure.axes[1].lines if len(line.get_ydata()) == 2]
         self.assertEqual(sorted(pgs.get_ydata()), [1.5, 2])
-        self.assertEqual([text.get_text() for text in figure.legends[0].get_texts()], ["exact", "pgs", "lemke", "ode-quickstep, small steps"])
+        self.assertEqual([text.get_text() for text in figure.legends[0].get_texts()],
+                         ["exact", "pgs", "lemke", "ode-quickstep, small steps"])
         style.pyplot.close(figure)
 
 
@@ -310,11 +334,12 @@ class BlocksTest(unittest.TestCase):
 
     def settled(self, rows, ode_step_ms, status="ok", series="settled"):
         told = {"series": series, "rows": str(rows), "step": str(rows), "threads": "1", "kinetic_energy_j": "0.25"}
-        return [{**line, **told} for line in (row("exact", 2, 1e-12), {**row("ode-step@ode-step-max-rows=1200", ode_step_ms, 1e-12), "status": status})]
+        return [{**line, **told} for line in (row("exact", 2, 1e-12),
+                                              {**row("ode-step@ode-step-max-rows=1200", ode_step_ms, 1e-12), "status": status})]
 
     def test_ode_step_is_held_against_exact_on_settled_piles_and_judged_at_500_rows(self):
-        made = self.made(accuracy.ode_step, "tradeoff.csv", [*self.settled(915, 60), *self.settled(310, 8), *self.settled(490, 31),
-                                                             *self.settled(2000, "nan", "refused")])
+        made = self.made(accuracy.ode_step, "tradeoff.csv", [*self.settled(915, 60), *self.settled(310, 8),
+                                                             *self.settled(490, 31), *self.settled(2000, "nan", "refused")])
         self.assertIn("Settled rock piles, one thread: ", made)
         self.assertIn("| s, 9 bodies, 310 rows, cfm 1e-05, settled | 0.250 | 2.00 | 8.00 | 4.00 | - |\n"
                       "| s, 9 bodies, 490 rows, cfm 1e-05, settled | 0.250 | 2.00 | 31.0 | 15.5 | holds |\n"
@@ -333,23 +358,27 @@ class BlocksTest(unittest.TestCase):
             row("exact", 2, 1e-12), row(until, 20, 1e-7), row("exact", 2, 1e-12, step=2), row(until, 19, 1e-7, step=2),
             {**row("exact", 2, 1e-12, step=3), "mass_ratio": "100"}, {**row(until, 20, 1, step=3), "mass_ratio": "100"}])
         self.assertIn("`exact`, ms, number of threads not recorded, on recorded steps; then t_pr + t_s of the fastest", made)
-        self.assertIn("\n\n`exact` is at least 10 times as fast as the fastest solver that iterates to 1e-6 on 2 of these 3 steps: s, 9 bodies (cfm 1e-05: "
-                      "10.0; mass ratio 100, cfm 1e-05: never). Not on 1: s, 9 bodies (cfm 1e-05: 9.50).", made)
+        self.assertIn("\n\n`exact` is at least 10 times as fast as the fastest solver that iterates to 1e-6 on 2 of these 3 "
+                      "steps: s, 9 bodies (cfm 1e-05: 10.0; mass ratio 100, cfm 1e-05: never). "
+                      "Not on 1: s, 9 bodies (cfm 1e-05: 9.50).", made)
 
     def test_a_sweep_is_held_against_what_was_asked_of_its_solver(self):
         rows = [{**row(f"{solver}@until=0.1", cost * 50 * 200 / 1e6, 0.09, parts), "threads": "2"}
-                for solver, parts, cost in (("pgs", "-", 21), ("pgs@order=height", "-", 24), ("pgs-parts", "mix", 26), ("apgd", "-", 15))]
+                for solver, parts, cost in (("pgs", "-", 21), ("pgs@order=height", "-", 24), ("pgs-parts", "mix", 26),
+                                            ("apgd", "-", 15))]
         made = self.made(accuracy.sweep_cost, "tradeoff.csv", rows)
         self.assertIn("2 threads, of the solves", made)
-        self.assertIn("| `pgs` | 1 | 21.0 | 21.0 | 21.0 | 20 | does not hold |\n| `pgs@order=height` | 1 | 24.0 | 24.0 | 24.0 | 25 | holds |", made)
+        self.assertIn("| `pgs` | 1 | 21.0 | 21.0 | 21.0 | 20 | does not hold |\n"
+                      "| `pgs@order=height` | 1 | 24.0 | 24.0 | 24.0 | 25 | holds |", made)
         self.assertIn("\n\nKept by all but `pgs` and `pgs-parts`.", made)
 
     def test_the_motions_say_why_some_solvers_move_one_scene_alone(self):
         made = self.made(accuracy.motion, "tradeoff_motion.csv", MotionTest.small_rows)
         self.assertIn("| rock pile, 25 bodies | lemke | 1.00 |", made)
-        self.assertIn("`lemke` and `ode-step` refuse steps of as many rows as the other scenes have, and `interior-point:monolithic` and `schur, mix+fm` solve to the "
-                      "same residual as `exact`: these move rock pile, 25 bodies, alone. There the height at the end differs from that under `exact` by at most "
-                      "3.00 mm.", made)
+        self.assertIn("`lemke` and `ode-step` refuse steps of as many rows as the other scenes have, "
+                      "and `interior-point:monolithic` and `schur, mix+fm` solve to the same residual as `exact`: "
+                      "these move rock pile, 25 bodies, alone. There the height at the end differs from that under `exact` "
+                      "by at most 3.00 mm.", made)
         made = self.made(accuracy.motion, "tradeoff_motion.csv", [moved_row("rock_pile", "exact", 1)])
         self.assertTrue(made.endswith("| rock pile | exact | 1.00 | 0.00100 | 2.00 | 0 | 2.00 | 0.00500 | 0.00300 |"), made)
 
@@ -358,9 +387,12 @@ class BlocksTest(unittest.TestCase):
                          [{**line, "interface_rows": "9"} for line in PartitionsOfSolversTest().on_two_threads()])
         self.assertIn("one thread where no other number is told; in brackets", made)
         self.assertIn("|  | `schur` | `pgs-parts` | `pgs-parts`, 2 threads |", made)
-        self.assertIn("Best is for `schur` `mix+fm` (1.00; one part 1.50), for `pgs-parts` `single+none` (1.00; one part 1.00), for `pgs-parts`, 2 threads `mix+fm` "
-                      "(1.00; one part 1.63). What is best for `schur` costs `pgs-parts` 1.25, `pgs-parts`, 2 threads 1.00 times the least. `pgs-parts` with `mix+fm` "
-                      "takes on two threads 0.612 of the time of one part on one, and 0.490 of that of the same parts on one.", made)
+        self.assertIn("Best is for `schur` `mix+fm` (1.00; one part 1.50), "
+                      "for `pgs-parts` `single+none` (1.00; one part 1.00), "
+                      "for `pgs-parts`, 2 threads `mix+fm` (1.00; one part 1.63). "
+                      "What is best for `schur` costs `pgs-parts` 1.25, `pgs-parts`, 2 threads 1.00 times the least. "
+                      "`pgs-parts` with `mix+fm` takes on two threads 0.612 of the time of one part on one, "
+                      "and 0.490 of that of the same parts on one.", made)
         made = self.made(accuracy.iterative_partitions, "tradeoff_partitions.csv",
                          [{**line, "interface_rows": "9"} for line in PartitionsOfSolversTest.rows])
         self.assertIn("number of threads not recorded; in brackets", made)
@@ -384,16 +416,21 @@ class TradeoffTest(StandInCase):
         self.assertEqual({problem.mass_ratio for problem in found}, {3})
         self.assertEqual({len(problem.times_ms) for problem in found}, {6 + 1 + 9})
         self.assertEqual({problem.threads for problem in found}, {("1",)})
-        self.assertEqual([(pile.bodies, pile.key[-1]) for pile in settled_piles(found)], [(26, "400"), (40, "400"), (74, "400"), (200, "400")])
+        self.assertEqual([(pile.bodies, pile.key[-1]) for pile in settled_piles(found)],
+                         [(26, "400"), (40, "400"), (74, "400"), (200, "400")])
         self.assertEqual(of_whole_steps(solves), solves)
-        first = [line for line in solves if all(line[name] == value for name, value in zip(("series", "scene", "cfm"), ("paper", "chain_drop", "1e-4")))]
-        for solver, limits in (("pgs-colored", ("0.1", "0.01")), ("pgs@order=height", ("0.1", "0.01", "0.001"))):  # at the last of which it gives up
+        first = [line for line in solves
+                 if all(line[name] == value
+                        for name, value in zip(("series", "scene", "cfm"), ("paper", "chain_drop", "1e-4")))]
+        for solver, limits in (("pgs-colored", ("0.1", "0.01")),
+                               ("pgs@order=height", ("0.1", "0.01", "0.001"))):  # at the last of which it gives up
             self.assertEqual([line["solver"] for line in first if line["solver"].startswith(solver)],
                              [f"{solver}@until={limit}@sweeps=3000" for limit in limits])
         moved = self.rows("tradeoff_motion.csv")
         wanted = [(scene, mover) for scene, _, movers in CASES for mover in movers]
         self.assertEqual({(line["scene"], line["bodies"], line["mover"]) for line in moved},
-                         {(scene, str(options[1]) if options else "200", mover.name) for scene, options, movers in CASES for mover in movers})
+                         {(scene, str(options[1]) if options else "200", mover.name) for scene, options, movers in CASES
+                          for mover in movers})
         self.assertEqual({line["height_m"] for line in moved if line["step"] == "5"}, {"5.5"})
         split = self.rows("tradeoff_partitions.csv")
         self.assertEqual({line["cfm"] for line in split}, {"1e-4"})
@@ -405,11 +442,13 @@ class TradeoffTest(StandInCase):
         self.assertEqual(len(runs), len(wanted))
         for words in runs:  # alone: what is measured is what moves the world
             self.assertEqual(words[words.index("--advance") + 1], words[words.index("--solver") + 1])
-        small, = [words for words in runs if "rock_pile" in words and "--bodies" not in words and "1 --steps 400 " in " ".join(words)]
+        small, = [words for words in runs
+                  if "rock_pile" in words and "--bodies" not in words and "1 --steps 400 " in " ".join(words)]
         self.assertIn(f"--dt {1 / 60 / 20!r}", " ".join(small))
         for words in calls:
             if "--advance" not in words:
-                self.assertTrue(words[words.index("--solver") + 1].startswith("ode-step@ode-step-max-rows=1200,ode-quickstep@"), words)
+                self.assertTrue(words[words.index("--solver") + 1].startswith("ode-step@ode-step-max-rows=1200,ode-quickstep@"),
+                                words)
                 self.assertIn("--threads 1 --repeats 3", " ".join(words))
         self.assertEqual({words[words.index("--steps") + 1] for words in calls if "--advance" not in words}, {"201", "401"})
         for name in ("price_of_accuracy", "time_to_accuracy", "crossover", "accuracy_profile", "tradeoff_motion"):

@@ -45,7 +45,8 @@ class TwoThreadsTest(Measurement):
             files = [pathlib.Path(word) for word in calls[0] if word.endswith(".h5")]
             self.assertEqual({files[0].name, files[-1].name}, {files[1].name})
             self.assertEqual([files[0].parent.name, files[-1].parent.name], ["before", "after"])
-        cells = 2 * 3 + 4 * (5 * 3 + 5)  # compliances of a pile and solvers; steps of Large Rock Pile, combinations and solvers that iterate
+        # Compliances of a pile and solvers; steps of Large Rock Pile, combinations and solvers that iterate.
+        cells = 2 * 3 + 4 * (5 * 3 + 5)
         self.assertEqual(len(self.rows("two_threads.csv")), cells * 3 * 3)  # ways, rounds
 
     def test_shares_of_the_chosen_piles_are_of_two_solves_side_by_side(self):
@@ -73,7 +74,8 @@ class TwoThreadsTest(Measurement):
         said = self.measure("--bodies", 600, STAND_IN_APART=300).stdout
         self.assertIn("| 600 | 1e-05 | exact | 8.00 | - | 2.00 | not measured: cores far apart |", said)
         self.assertIn("| 600 | 1e-05 | pivot:schur-nested | 8.00 | 2.00 | 2.00 | 1.00 |", said)
-        self.assertTrue(said.endswith("\n6 of 258 replays on two threads were on cores far apart and do not count\n"), said[-99:])
+        self.assertTrue(said.endswith("\n6 of 258 replays on two threads were on cores far apart and do not count\n"),
+                        said[-99:])
         told = speed.two_threads(self.stored())
         self.assertIn("| - (- of 2.00) |", told)
         self.assertIn("; 6 of 258 replays on two threads were on cores far apart and do not count. Rock piles:", told)
@@ -81,7 +83,8 @@ class TwoThreadsTest(Measurement):
     def test_solves_that_count_and_were_alone_are_refused(self):
         self.measure("--bodies", 200, STAND_IN_LATE_S=0.3)
         self.calls()
-        said = self.measure("--bodies", 200, code=1, STAND_IN_LATE_S=0.5).stderr.splitlines()  # 15 cells, 3 solves of 8 ms in each
+        # 15 cells, 3 solves of 8 ms in each.
+        said = self.measure("--bodies", 200, code=1, STAND_IN_LATE_S=0.5).stderr.splitlines()
         self.assertEqual(sum(call.endswith("/replay1 --force") for call in self.calls()), 1 + 3)  # of 200 rocks, and again
         self.assertIn("solves side by side ended 0.5 s apart, so the last that count were alone", said[-2])
         self.assertIn("solves side by side were not at the same time, 3 times", said[-1])
@@ -103,15 +106,18 @@ class SharesTest(unittest.TestCase):
         self.assertEqual((share.ratio, share.ceiling, share.share, share.measured), (1.6, 1.6, 1, False))
 
     def test_rounds_on_cores_far_apart_are_left_out(self):
-        rows = [row | {"core_round_trip_ns": 510 if (row["threads"], row["round"]) == (2, 1) else 105} for row in stored_data.two_threads_rows()]
+        rows = [row | {"core_round_trip_ns": 510 if (row["threads"], row["round"]) == (2, 1) else 105}
+                for row in stored_data.two_threads_rows()]
         share = thread_times.shares(rows)[0]
         self.assertEqual((share.one_ms, share.two_ms, share.far_rounds, share.rounds), (10, (6.25 + 1006.25) / 2, 1, 3))
-        self.assertEqual(thread_times.far_in_words([share]), "1 of 3 replays on two threads were on cores far apart and do not count")
+        self.assertEqual(thread_times.far_in_words([share]),
+                         "1 of 3 replays on two threads were on cores far apart and do not count")
         self.assertEqual(thread_times.far_in_words(thread_times.shares(stored_data.two_threads_rows())), "")
 
     def test_a_way_that_is_missing_is_an_error(self):
         rows = [row for row in stored_data.two_threads_rows() if row["processes"] == 1 or row["step"] != 300]
-        with self.assertRaisesRegex(ResultError, "large_rock_pile 600 1e-05 300 schur mindp none is not there with one thread,"):
+        with self.assertRaisesRegex(ResultError,
+                                    "large_rock_pile 600 1e-05 300 schur mindp none is not there with one thread,"):
             thread_times.shares(rows)
 
     def test_the_least_is_of_those_that_are_measured(self):
@@ -125,12 +131,14 @@ class SharesTest(unittest.TestCase):
     def test_those_below_what_was_asked_are_counted_among_those_that_are_measured(self):
         slow = ("large_rock_pile", 600, 1e-5, 100, "schur", "mr", "none")
         shares = thread_times.shares(stored_data.two_threads_rows(stored_data.TIMES | {slow: (100, 70, 100)}))
-        found = [thread_times.counts(of_step) for of_step in thread_times.by_step(thread_times.large_rock_pile(shares)[0]).values()]
+        found = [thread_times.counts(of_step)
+                 for of_step in thread_times.by_step(thread_times.large_rock_pile(shares)[0]).values()]
         self.assertEqual(found, [thread_times.Counts(below=1, measured=3, combinations=4), thread_times.Counts(0, 2, 3)])
 
     def test_solvers_that_iterate_stand_apart_and_are_held_against_what_was_asked(self):
         root = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
-        stored_data.write_csv(root / "two_threads.csv", stored_data.two_threads_rows(stored_data.TIMES | stored_data.SWEEPS_TIMES))
+        stored_data.write_csv(root / "two_threads.csv",
+                              stored_data.two_threads_rows(stored_data.TIMES | stored_data.SWEEPS_TIMES))
         stored_data.write_provenance(root, "two_threads.csv")
         told = speed.two_threads(Stored(root))
         self.assertIn("| 100 | `mix+none` 0.90 (1.80 of 2.00) | 0 | 2 | 3 |\n", told)  # as without them
@@ -142,7 +150,8 @@ class SharesTest(unittest.TestCase):
         slow = {key: (20, two, beside) for key, (_, two, beside) in stored_data.SWEEPS_TIMES.items()} | {
             ("large_rock_pile", 600, 1e-5, 300, "pgs-colored@sweeps=100", "-", "-"): (20, 14, 20)}
         sweeps = thread_times.large_rock_pile(thread_times.shares(stored_data.two_threads_rows(slow)))[1]
-        self.assertEqual(thread_times.verdict([share for share in sweeps if share.solver.startswith("pgs-colored")]), "0.75, does not hold")
+        self.assertEqual(thread_times.verdict([share for share in sweeps if share.solver.startswith("pgs-colored")]),
+                         "0.75, does not hold")
         alone = [dataclasses.replace(sweeps[0], beside_ms=30)]
         self.assertEqual(thread_times.verdict(alone), "0.75, not measured")
 

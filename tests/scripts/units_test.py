@@ -1,4 +1,5 @@
-"""Sources that are compiled as one with the sanitisers keep no name to themselves that another of them, or its headers, has too."""
+"""Sources that are compiled as one with the sanitisers keep no name to themselves that another of them,
+or its headers, has too."""
 import pathlib
 import subprocess
 import sys

@@ -69,7 +69,8 @@ class Campaign:
             done = subprocess.run(words, capture_output=True, text=True, errors="replace", check=False, **options)
         if done.returncode != 0:
             said = last_line(done.stderr, f"cleave sweep stopped with exit code {done.returncode}")
-            raise ResultError(re.sub(r"^cleave sweep: ([^:]*\.toml:\d+: (?=[a-z]))?", lambda place: "--" if place[1] else "", said))
+            raise ResultError(re.sub(r"^cleave sweep: ([^:]*\.toml:\d+: (?=[a-z]))?",
+                                     lambda place: "--" if place[1] else "", said))
 
     def run(self, program, *words, force=False):
         """The exit code of a campaign that ran to its end: 0, or 2 where a cell is not ok."""
@@ -78,7 +79,8 @@ class Campaign:
 
 
 def run_sweep(words, name, **options):
-    """The exit code of `cleave sweep` with these words, where it ran the campaign of this name to its end: 0, or 2 where a cell is not ok."""
+    """The exit code of `cleave sweep` with these words, where it ran the campaign of this name to its end: 0,
+    or 2 where a cell is not ok."""
     try:
         code = run_and_watch(words, **options)
     except KeyboardInterrupt:

@@ -86,8 +86,8 @@ def partition_ratios(stored):
               text.number(ratio.speed), text.number(ratio.least_speed), text.number(ratio.growth)]
              for words, ratio in found.items() if ratio]
     least, most = cut_ratios.TIMED_BODIES
-    return (f"Against the best of METIS and SCOTCH, all strategies, ten seeds each ({stored.origin(SPEED[0])}); speed on graphs of {least} "
-            f"to {most} bodies:\n\n" +
+    return (f"Against the best of METIS and SCOTCH, all strategies, ten seeds each ({stored.origin(SPEED[0])}); speed on "
+            f"graphs of {least} to {most} bodies:\n\n" +
             text.table(["", "rows, geometric mean", "rows, worst graph", "times as fast as METIS recursive", "at least",
                         "time a body, 100000 over 1000"], lines) +
             "\n\nWhat was asked of them, and what holds:\n\n" +
@@ -110,9 +110,9 @@ def karger(stored):
     lines = [_karger_line(scene, karger_trials.cells_of(rows, scene)) for scene in dict.fromkeys(row["scene"] for row in rows)]
     rivals = ["+".join(rival) for rival in karger_trials.RIVALS]
     steps = len({row["step"] for row in rows})
-    return (f"Interface rows / t_pr in ms, means over {steps} recorded steps of a scene (`{KARGER[1]}`; {stored.origin(KARGER[0])}); then the "
-            f"least trials that cut no more rows than {rivals[0]}, and the lowest t_pr + t_s of {' and '.join(rivals)} and of karger with "
-            "any number of trials, one thread, `schur`, ms:\n\n" +
+    return (f"Interface rows / t_pr in ms, means over {steps} recorded steps of a scene (`{KARGER[1]}`; "
+            f"{stored.origin(KARGER[0])}); then the least trials that cut no more rows than {rivals[0]}, and the lowest t_pr + "
+            f"t_s of {' and '.join(rivals)} and of karger with any number of trials, one thread, `schur`, ms:\n\n" +
             text.table(["scene", *rivals, *(f"karger+fm, {trials}" for trials in karger_trials.TRIALS),
                         "trials needed, none", "trials needed, fm", "lowest total", "of karger"], lines))
 

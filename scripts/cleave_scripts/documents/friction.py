@@ -1,4 +1,5 @@
-"""What the cheaper friction models change, in one step and in a motion, what the others cost, and Coulomb's law beside Siconos."""
+"""What the cheaper friction models change, in one step and in a motion, what the others cost,
+and Coulomb's law beside Siconos."""
 import statistics
 
 from cleave_scripts.documents.stored import need
@@ -31,9 +32,10 @@ def friction_velocities(stored):
             lines.append([scene.replace("_", " "), model, f"{len(held)} of {len(mine)}",
                           *(text.number(number) if held else "-" for of in (shares, most)
                             for number in ((statistics.median(of), max(of)) if held else (0, 0)))])
-    return (f"Recorded steps of the scenes, solved by `exact` under `box` and `cone`, and others with the bounds that `box-converged` ended on where it moved "
-            f"the scene, held against Coulomb's law in the same step, where both were solved: root mean square over the bodies of the difference of their velocities, as a share of the velocities' own, and the "
-            f"largest difference of one body (`{MADE_BY}`; {stored.origin(VELOCITIES[0])}):\n\n" +
+    return ("Recorded steps of the scenes, solved by `exact` under `box` and `cone`, and others with the bounds that "
+            "`box-converged` ended on where it moved the scene, held against Coulomb's law in the same step, where both were "
+            "solved: root mean square over the bodies of the difference of their velocities, as a share of the velocities' "
+            f"own, and the largest difference of one body (`{MADE_BY}`; {stored.origin(VELOCITIES[0])}):\n\n" +
             text.table(["scene", "model", "steps", "difference, %, median", "most", "one body, m/s, median", "most"], lines))
 
 
@@ -45,46 +47,52 @@ def friction_motion(stored):
             mine = [row for row in rows if (row["scene"], row["friction"]) == (scene, model)]
             last = mine[-1]
             passes = statistics.fmean(int(row["factorizations"]) for row in mine)
-            lines.append([scene.replace("_", " "), model, text.number(float(last["height_m"])), text.number(float(last["run_out_m"])),
+            lines.append([scene.replace("_", " "), model, text.number(float(last["height_m"])),
+                          text.number(float(last["run_out_m"])),
                           *(text.number(float(last[name]) / 1000) for name in ("kinetic_energy_j", "potential_energy_j")),
                           text.number(1000 * float(last["max_penetration_m"])), text.number(passes), last["unsolved_steps"]])
     steps = int(rows[-1]["step"]) + 1
-    return (f"The scenes after {steps} steps, each moved by `exact` under one model (`{MADE_BY}`; {stored.origin(MOTION[0])}): height of the highest "
-            "centre, horizontal distance from where the middle was within which 95 % of the mass lies, energies, deepest penetration, "
-            "factorisations of a measured step (mean), and the steps that were not solved within the limit:\n\n" +
-            text.table(["scene", "model", "height, m", "run-out, m", "kinetic energy, kJ", "potential energy, kJ", "penetration, mm",
-                        "factorisations", "unsolved steps"], lines))
+    return (f"The scenes after {steps} steps, each moved by `exact` under one model (`{MADE_BY}`; {stored.origin(MOTION[0])}): "
+            "height of the highest centre, horizontal distance from where the middle was within which 95 % of the mass lies, "
+            "energies, deepest penetration, factorisations of a measured step (mean), and the steps that were not solved "
+            "within the limit:\n\n" +
+            text.table(["scene", "model", "height, m", "run-out, m", "kinetic energy, kJ", "potential energy, kJ",
+                        "penetration, mm", "factorisations", "unsolved steps"], lines))
 
 
 def friction_cost(stored):
     rows = need(stored.table(*COST), "costs of friction models", "friction_mismatch")
     cones, laws = markdown(rows)
-    return (f"Recorded steps, the two models in turn on one thread, medians of {len({row['round'] for row in rows})} rounds (`{COST[1]}`; "
-            f"{stored.origin(COST[0])}). {waited(rows)} Rock piles that the exact box moves, their steps by `{CONE_OPTIONS[1]}` from zero impulses. {cones}\n\n"
+    return (f"Recorded steps, the two models in turn on one thread, medians of {len({row['round'] for row in rows})} "
+            f"rounds (`{COST[1]}`; {stored.origin(COST[0])}). {waited(rows)} Rock piles that the "
+            f"exact box moves, their steps by `{CONE_OPTIONS[1]}` from zero impulses. {cones}\n\n"
             f"Scenes that Coulomb's law moves, their steps by `{LAW_OPTIONS[1]}` from the impulses of the step before. {laws}")
 
 
 def friction_bounds(stored):
     rows = need(stored.table(*BOUNDS), "bounds of friction", "sweep_ms")
-    return (f"How far the bounds of the box are from mu times the normal impulses that the step ends on, % of these (`bound_mismatch`, median over measured "
-            f"steps), by the Gauss-Seidel sweeps that predict them from the impulses of the step before; in brackets what the sweeps beyond {DEFAULT_SWEEPS}, "
-            f"the default, cost, % of t_s of `exact` on one thread. Each number of sweeps moves the scene its own way, so that chance is in these, too. Last, "
-            f"without a sweep: mu times the normal impulses of the step before where `box-converged` moves the scene, in brackets the measured steps in which "
-            f"bounds did not settle (`{MADE_BY}`; {stored.origin(BOUNDS[0])}):\n\n"
+    return ("How far the bounds of the box are from mu times the normal impulses that the step ends on, % of these "
+            "(`bound_mismatch`, median over measured steps), by the Gauss-Seidel sweeps that predict them from the impulses "
+            f"of the step before; in brackets what the sweeps beyond {DEFAULT_SWEEPS}, the default, cost, % of t_s of `exact` "
+            "on one thread. Each number of sweeps moves the scene its own way, so that chance is in these, too. Last, "
+            "without a sweep: mu times the normal impulses of the step before where `box-converged` moves the scene, in "
+            f"brackets the measured steps in which bounds did not settle (`{MADE_BY}`; {stored.origin(BOUNDS[0])}):\n\n"
             f"{bound_ratios.table(rows)}\n\n{bound_ratios.verdict(rows)}")
 
 
 def coulomb_peers(stored):
     rows = need(stored.table(*COULOMB), "Coulomb's law beside Siconos", "peer_siconos_error")
-    return (f"`exact` and the solvers of Siconos on the same recorded steps, {text.listed(siconos.MUS)} as coefficient of friction, from the same warm start "
-            f"(`{COULOMB[1]}`; {stored.origin(COULOMB[0])}). {siconos.counts(rows)}\n\n{siconos.scene_table(rows)}")
+    return (f"`exact` and the solvers of Siconos on the same recorded steps, {text.listed(siconos.MUS)} as "
+            f"coefficient of friction, from the same warm start (`{COULOMB[1]}`; {stored.origin(COULOMB[0])}). "
+            f"{siconos.counts(rows)}\n\n{siconos.scene_table(rows)}")
 
 
 def coulomb_beyond(stored):
     rows = need(stored.table(*COULOMB), "Coulomb's law beside Siconos", "peer_siconos_error")
     found = sum(any(siconos.beyond(row)) for row in rows)
-    return (f"{found} of {len(rows)} rows, a row a problem and solver of Siconos (`{COULOMB[1]}`; {stored.origin(COULOMB[0])}). Left out are "
-            f"{text.listed([f'`{scene}`' for scene in siconos.LEFT_OUT])}: their motors are refused.\n\n{siconos.beyond_table(rows)}")
+    return (f"{found} of {len(rows)} rows, a row a problem and solver of Siconos (`{COULOMB[1]}`; "
+            f"{stored.origin(COULOMB[0])}). Left out are {text.listed([f'`{scene}`' for scene in siconos.LEFT_OUT])}: their "
+            f"motors are refused.\n\n{siconos.beyond_table(rows)}")
 
 
 BLOCKS = {"friction_velocities": friction_velocities, "friction_motion": friction_motion, "friction_cost": friction_cost,

@@ -58,7 +58,8 @@ def fit(stored):
     for by, name in (("time", "time"), ("cut", "interface rows")):
         rows = _fits(stored, by)
         lines += [_fit_line(f"{name}, {place} of {len(rows)}", row) for place, row in enumerate(rows[:SHOWN], 1)]
-        lines += [_fit_line(f"{name}, {place} of {len(rows)}: the defaults", row) for place, row in enumerate(rows, 1) if _is(row, DEFAULT)]
+        lines += [_fit_line(f"{name}, {place} of {len(rows)}: the defaults", row) for place, row in enumerate(rows, 1)
+                  if _is(row, DEFAULT)]
     head = text.table(["by", *TITLES, "mean", *map(title, SCENES)], lines)
     return f"{head}\n\n{_choice_means(stored)}"
 
@@ -68,7 +69,8 @@ def _choice_means(stored):
     rows, parts = _fits(stored, "time"), []
     for choice, words in zip(CHOICES, TITLES):
         values = dict.fromkeys(row[choice] for row in rows)
-        means = [f"`{value}` {statistics.mean(float(row['mean']) for row in rows if row[choice] == value):.2f}" for value in values]
+        means = [f"`{value}` {statistics.mean(float(row['mean']) for row in rows if row[choice] == value):.2f}"
+                 for value in values]
         parts.append(f"{words}: {', '.join(means)}")
     return f"Mean correlation by time of all settings with a choice: {'; '.join(parts)}."
 
@@ -92,7 +94,8 @@ def best_table(stored):
         cells = []
         for names in COMBINATIONS:
             row = _timed(stored, setting, (scene, *names))
-            cells.append(Cell(*names, Times(float(row["t_s_ms"]), float(row["t_pr_ms"])), Times(*paper[(scene, *names)]), int(row["steps"])))
+            cells.append(Cell(*names, Times(float(row["t_s_ms"]), float(row["t_pr_ms"])), Times(*paper[(scene, *names)]),
+                              int(row["steps"])))
         mark_lowest(scene, cells, paper)
         tables.append(SceneTable(scene, cells[0].ok, "1", PAPER["solver"], cells))
     said = ", ".join(f"{words} `{setting[choice]}`" for choice, words in zip(CHOICES, TITLES))

@@ -13,17 +13,18 @@ def _rounds(rows):
 
 def running_simulation(stored):
     rows = need(stored.table(*RUNNING), "running simulations", "session", "sweep_ms")
-    return (f"`{running.SOLVER}`, one thread, warm from the step before, every step solved; medians of {_rounds(rows)} rounds, then means over "
-            f"the steps (`{RUNNING[1]}`; {stored.origin(RUNNING[0])}). A sweep is one of `{running.SWEEPER}` on the same steps in the same "
-            f"run:\n\n{running.markdown(rows)}")
+    return (f"`{running.SOLVER}`, one thread, warm from the step before, every step solved; medians of {_rounds(rows)} rounds, "
+            f"then means over the steps (`{RUNNING[1]}`; {stored.origin(RUNNING[0])}). A sweep is one of `{running.SWEEPER}` "
+            f"on the same steps in the same run:\n\n{running.markdown(rows)}")
 
 
 def large_scenes(stored):
     rows = need(stored.table(*LARGE), "large scenes", "dissection_mflop", "dense_gflop_per_s")
     piles, silos, left_out = scenes.markdown(rows)
-    return (f"A step by `exact`, from the impulses recorded with it, medians of {_rounds(rows)} replays (`{LARGE[1]}`; {stored.origin(LARGE[0])}). "
-            f"{left_out} Rock piles; a sweep is one of `{running.SWEEPER}` on the same step in the same round:\n\n{piles}\n\nSilos; the dense "
-            f"factorisation is that of {scenes.DENSE_ROWS} rows on as many threads, in the same run:\n\n{silos}")
+    return (f"A step by `exact`, from the impulses recorded with it, medians of {_rounds(rows)} replays (`{LARGE[1]}`; "
+            f"{stored.origin(LARGE[0])}). {left_out} Rock piles; a sweep is one of `{running.SWEEPER}` on the same step in the "
+            f"same round:\n\n{piles}\n\nSilos; the dense factorisation is that of {scenes.DENSE_ROWS} rows on as many threads, "
+            f"in the same run:\n\n{silos}")
 
 
 BLOCKS = {"running_simulation": running_simulation, "large_scenes": large_scenes}

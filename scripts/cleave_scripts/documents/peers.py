@@ -10,10 +10,11 @@ def peer_times(stored):
     rows = need(stored.table(*TIMES), "the times of other people's solvers", "peer_timeout_s")
     steps, rounds = (list(dict.fromkeys(row[column] for row in rows)) for column in ("step", "round"))
     table, sentences = markdown(rows)
-    return (f"The same recorded steps {text.listed(steps)} of settled rock piles, cfm 1e-5, by `{OURS}` and by the solvers of others, one thread, in "
-            f"turn (`{TIMES[1]}`; {stored.origin(TIMES[0])}). Of a step the median of {len(rounds)} rounds, but what took more than "
-            f"{SLOW_MS / 1000:g} s was solved once; then medians over the steps, and the largest residual of them. The last column is between "
-            f"the smallest pile and the largest; MuJoCo's rows are its own:\n\n{table}\n\n{sentences}")
+    return (f"The same recorded steps {text.listed(steps)} of settled rock piles, cfm 1e-5, by `{OURS}` and by the solvers "
+            f"of others, one thread, in turn (`{TIMES[1]}`; {stored.origin(TIMES[0])}). Of a step the median of {len(rounds)} "
+            f"rounds, but what took more than {SLOW_MS / 1000:g} s was solved once; then medians over the steps, and the "
+            "largest residual of them. The last column is between the smallest pile and the largest; MuJoCo's rows are its "
+            f"own:\n\n{table}\n\n{sentences}")
 
 
 BLOCKS = {"peer_times": peer_times}

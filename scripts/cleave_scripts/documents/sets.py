@@ -82,7 +82,8 @@ SETS = {
         "the dense Cholesky factorisation against the processor's peak and OpenBLAS",
         "scripts/benchmark_dense"),
     "busy_machine.csv": ("a step on two threads while other programs keep the cores busy", "scripts/busy_machine"),
-    "idle_cost.csv": ("steps on two threads of an idle machine, with threads that go to sleep and with threads that never do", "scripts/idle_cost"),
+    "idle_cost.csv": ("steps on two threads of an idle machine, with threads that go to sleep and with threads that never do",
+                      "scripts/idle_cost"),
     "partition_benchmark.json": (
         "partitioners and refiners, METIS and SCOTCH among them, on recorded steps and synthetic piles",
         "scripts/benchmark_partitioners"),
@@ -102,7 +103,8 @@ SETS = {
 def command_of(stored, name):
     """What made it as it is stored, less where it went; files of a directory that are sets of their own do not say."""
     known = stored.provenance()
-    entry = known.get(name) or next((entry for file, entry in known.items() if file.startswith(f"{name}/") and file not in SETS), None)
+    entry = known.get(name) or next((entry for file, entry in known.items()
+                                     if file.startswith(f"{name}/") and file not in SETS), None)
     made_by = entry and entry.get("command") or SETS[name][1]
     return re.sub(r" --out \S+", "", made_by)
 

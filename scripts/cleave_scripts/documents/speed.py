@@ -40,9 +40,9 @@ def two_threads(stored):
     for step, of_step in thread_times.by_step(direct).items():
         least = thread_times.least(of_step)
         large.append([step, f"`{least.combination}` {_share(least)}", *dataclasses.astuple(thread_times.counts(of_step))])
-    return (f"Two threads as a share of the ceiling: of what two independent solves on one thread each reach side by side in the "
-            f"same run, 2 on an ideal machine. In brackets t_s of one thread over that of two, and the ceiling; where that is "
-            f"below {thread_times.LEAST_CEILING} no share is measured (-). Medians of {len({row['round'] for row in rows})} "
+    return ("Two threads as a share of the ceiling: of what two independent solves on one thread each reach side by side in "
+            "the same run, 2 on an ideal machine. In brackets t_s of one thread over that of two, and the ceiling; where that "
+            f"is below {thread_times.LEAST_CEILING} no share is measured (-). Medians of {len({row['round'] for row in rows})} "
             f"rounds (`{THREADS[1]}`; {stored.origin(THREADS[0])}){f'; {far}' if far else ''}. Rock piles:\n\n" +
             text.table(["rocks", "cfm", *(f"`{solver}`" for solver in solvers)], lines) +
             "\n\n`schur` on Large Rock Pile, the least over the combinations, and how many are below what was asked:\n\n" +
@@ -53,8 +53,10 @@ def _sweeps(found):
     """Of solvers that iterate on Large Rock Pile; nothing where none was measured."""
     if not found:
         return ""
-    by_solver = {solver: [share for share in found if share.solver == solver] for solver in dict.fromkeys(share.solver for share in found)}
-    lines = [[f"`{solver}`", *map(_share, of_solver), thread_times.verdict(of_solver)] for solver, of_solver in by_solver.items()]
+    by_solver = {solver: [share for share in found if share.solver == solver]
+                 for solver in dict.fromkeys(share.solver for share in found)}
+    lines = [[f"`{solver}`", *map(_share, of_solver), thread_times.verdict(of_solver)]
+             for solver, of_solver in by_solver.items()]
     return ("\n\nSolvers that iterate, on the same steps:\n\n" +
             text.table(["", *(f"step {step}" for step in thread_times.by_step(found)), "asked of every step"], lines))
 
@@ -78,9 +80,11 @@ def modelled_workers(stored):
     rows = need(stored.table(*MODELLED), "modelled workers")
     rounds = len({row["round"] for row in rows})
     steps, waited = modelled_times.compare(rows)
-    parts = [modelled_times.lines_of_costs(rows), modelled_times.lines_of_steps(steps, waited), modelled_times.lines_of_speed_ups(steps)]
-    return (f"`{MODELLED[1]}`: replays of recorded steps with one and with two threads, in turn, the fastest of {rounds} rounds, seed "
-            f"{text.listed(sorted({row['seed'] for row in rows}))}, `{'+'.join(BEST)}` ({stored.origin(MODELLED[0])}). "
+    parts = [modelled_times.lines_of_costs(rows), modelled_times.lines_of_steps(steps, waited),
+             modelled_times.lines_of_speed_ups(steps)]
+    return (f"`{MODELLED[1]}`: replays of recorded steps with one and with two threads, in turn, the fastest of "
+            f"{rounds} rounds, seed {text.listed(sorted({row['seed'] for row in rows}))}, `{'+'.join(BEST)}` "
+            f"({stored.origin(MODELLED[0])}). "
             + "\n\n".join(filter(None, parts)))
 
 
@@ -98,13 +102,15 @@ def busy_machine(stored):
                      f"{'loop' if loops == 1 else 'loops'}" for loops, time in times.items() if loops)
     holds = all(times[loops] <= most * times[0] for loops, most in MOST_TIMES_AS_LONG.items() if loops in times)
     asked = text.listed(f"{most:g}" for most in MOST_TIMES_AS_LONG.values())
-    return (f"A step of Large Rock Pile with `{'+'.join(BEST)}` takes {text.number(times[0])} ms on two threads of an idle machine, and "
-            f"{busy} of other login sessions; asked: at most {asked} times, {text.holds(holds)} (`{BUSY[1]}`; {stored.origin(BUSY[0])}).")
+    return (f"A step of Large Rock Pile with `{'+'.join(BEST)}` takes {text.number(times[0])} ms on two threads of an idle "
+            f"machine, and {busy} of other login sessions; asked: at most {asked} times, {text.holds(holds)} (`{BUSY[1]}`; "
+            f"{stored.origin(BUSY[0])}).")
 
 
 def idle_cost(stored):
     shares = thread_times.sleeping_over_awake(need(stored.table(*IDLE), "threads that sleep", "awake_t_s_ms"))
-    told = text.listed(f"{text.number(share)} times as long as with threads that never sleep on {scene.replace('_', ' ')}" for scene, share in shares.items())
+    told = text.listed(f"{text.number(share)} times as long as with threads that never sleep on {scene.replace('_', ' ')}"
+                       for scene, share in shares.items())
     return f"On an idle machine solves on two threads take {told} (medians; `{IDLE[1]}`; {stored.origin(IDLE[0])})."
 
 

@@ -63,7 +63,8 @@ class Stored:
         return json.loads(path.read_text(encoding="utf-8"))["files"] if path.exists() else {}
 
     def origin(self, name):
-        """'AMD EPYC, 2 cores, commit 0123456789' of a directory of runs, or of a file with provenance or a directory of such."""
+        """'AMD EPYC, 2 cores, commit 0123456789' of a directory of runs, or of a file with provenance or a directory of
+        such."""
         manifests = [load_manifest(path.parent) for path in sorted((self.root / name).rglob("manifest.json"))]
         known = self.provenance()
         within = [entry for file, entry in known.items() if file.startswith(f"{name}/")]

@@ -1,4 +1,5 @@
-"""What partitions are worth: which solver is fastest with its best partition, and what taking over parts from step to step saves."""
+"""What partitions are worth: which solver is fastest with its best partition,
+and what taking over parts from step to step saves."""
 import math
 import statistics
 
@@ -24,16 +25,18 @@ def over_time(stored):
     lines = [[f"{scene.replace('_', ' ')}, {partitioner}+{refiner}", text.number(found[always].t_pr_ms / found[always].t_s_ms),
               *(_course_cell(found[rule], found[always]) for rule in rules)]
              for (scene, partitioner, refiner), found in partition_over_time.courses(rows).items()]
-    return (f"t_pr of `always` over its t_s (one thread, `auto:schur-bodies`), then how many times less t_pr a rule takes than `always`, its "
-            "interface rows against those of `always`, and of a hundred steps those with fresh / repaired / kept parts; sums over all steps "
-            f"with a constraint ({stored.origin(OVER_TIME[0])}):\n\n" + text.table(["", "t_pr / t_s", *rules], lines))
+    return ("t_pr of `always` over its t_s (one thread, `auto:schur-bodies`), then how many times less t_pr a rule takes than "
+            "`always`, its interface rows against those of `always`, and of a hundred steps those with fresh / repaired / "
+            f"kept parts; sums over all steps with a constraint ({stored.origin(OVER_TIME[0])}):\n\n" +
+            text.table(["", "t_pr / t_s", *rules], lines))
 
 
 def _worth_rows(stored, what, *columns):
     """Rows of rounds; where only one was measured, as was done before, that is no measurement."""
     rows = need(stored.table(*WORTH), what, *columns)
     if "round" not in rows[0]:
-        raise NoResults(f"What is stored tells no noise, as each cell was timed once: `{WORTH[1]}` makes `results/{WORTH[0]}` anew, in rounds.")
+        raise NoResults(f"What is stored tells no noise, as each cell was timed once: `{WORTH[1]}` makes `results/{WORTH[0]}` "
+                        "anew, in rounds.")
     return rows
 
 
@@ -59,7 +62,8 @@ def _worth_cell(cells, kernel):
     cell = cells[kernel]
     if cell.cuts:
         return f"{text.number(cell.time_ms)} ({_partition(cell)})"
-    return text.number(cell.time_ms) + (f" ({_kernel(cell.solver)}, {_partition(cell)}: {_parts(cell)})" if cell.solver != kernel else "")
+    return (text.number(cell.time_ms) +
+            (f" ({_kernel(cell.solver)}, {_partition(cell)}: {_parts(cell)})" if cell.solver != kernel else ""))
 
 
 def _fastest(cells, name=str):
@@ -74,9 +78,10 @@ def _winner(problem, cells):
 
 
 def _rule(rows):
-    return (f"Of {len({row['round'] for row in rows})} rounds the odd ones choose the partition and the even ones tell its time; every replay is put at the pace of "
-            f"`{partition_worth.WHOLE_SYSTEM}` and of kernels with one part (`{partition_worth.ONE_PART}`) in it. What is fastest in the odd rounds is named where every "
-            f"other takes at least {100 * partition_worth.LEAST_LEAD:.0f} % longer in each even one; those that do not are undecided with it")
+    return (f"Of {len({row['round'] for row in rows})} rounds the odd ones choose the partition and the even ones tell "
+            f"its time; every replay is put at the pace of `{partition_worth.WHOLE_SYSTEM}` and of kernels with one part "
+            f"(`{partition_worth.ONE_PART}`) in it. What is fastest in the odd rounds is named where every other takes at "
+            f"least {100 * partition_worth.LEAST_LEAD:.0f} % longer in each even one; those that do not are undecided with it")
 
 
 def _model(rows):
@@ -84,10 +89,11 @@ def _model(rows):
     errors = partition_worth.model_errors(rows)
     of_all = statistics.median(abs(item.error) for item in errors)
     slow = [abs(item.error) for item in errors if item.slow]
-    of_slow = f", by {100 * statistics.median(slow):.1f} % of the {len(slow)} that take {modelled_times.LEAST_MS} ms and more" if slow else ""
+    of_slow = (f", by {100 * statistics.median(slow):.1f} % of the {len(slow)} that take {modelled_times.LEAST_MS} ms and more"
+               if slow else "")
     low = sum(item.error < 0 for item in errors) / len(errors)
-    return (f"On two workers t_s is both modelled and measured, of {len(errors)} cells: the model is off by {100 * of_all:.1f} % in the median{of_slow}, "
-            f"and too low in {text.percent(low)} of all.")
+    return (f"On two workers t_s is both modelled and measured, of {len(errors)} cells: the model is off by "
+            f"{100 * of_all:.1f} % in the median{of_slow}, and too low in {text.percent(low)} of all.")
 
 
 def worth(stored):
@@ -97,14 +103,17 @@ def worth(stored):
     for problem in partition_worth.problems(rows):
         scene, bodies, cfm = problem.key
         lines.append([f"{scene.replace('_', ' ')}, {bodies} bodies, {problem.rows} rows, cfm {float(cfm):g}",
-                      *(_worth_cell(problem.best[1], kernel) for kernel in partition_worth.NAMES), _fastest(problem.best[1], _kernel),
-                      *(_winner(problem, cells) for cells in (problem.measured, *(problem.best[workers] for workers in SHOWN_WORKERS)))])
-    return ("Least t_pr + t_s over all partitions tried, ms, one thread: of every kernel with a partition that cuts rows, and of the whole system, which "
-            "kernels solve too where nothing is cut. In brackets the partition that gave it: partitioner, its "
-            f"effort or split, most bodies of a part, refiner (`{WORTH[1]}`; {stored.origin(WORTH[0])}). Then the fastest on one thread and on two, and of the modelled "
-            f"{' and '.join(map(str, SHOWN_WORKERS))} workers, with the speed-up against the fastest on one. {_rule(rows)}, with the speed-up of the first:\n\n" +
-            text.table(["", *partition_worth.NAMES.values(), "one thread", "two threads", *(f"{workers} workers" for workers in SHOWN_WORKERS)], lines) +
-            f"\n\n{_model(rows)}")
+                      *(_worth_cell(problem.best[1], kernel) for kernel in partition_worth.NAMES),
+                      _fastest(problem.best[1], _kernel),
+                      *(_winner(problem, cells)
+                        for cells in (problem.measured, *(problem.best[workers] for workers in SHOWN_WORKERS)))])
+    return ("Least t_pr + t_s over all partitions tried, ms, one thread: of every kernel with a partition that cuts rows, "
+            "and of the whole system, which kernels solve too where nothing is cut. In brackets the partition that gave it: "
+            f"partitioner, its effort or split, most bodies of a part, refiner (`{WORTH[1]}`; {stored.origin(WORTH[0])}). Then "
+            f"the fastest on one thread and on two, and of the modelled {' and '.join(map(str, SHOWN_WORKERS))} workers, with "
+            f"the speed-up against the fastest on one. {_rule(rows)}, with the speed-up of the first:\n\n" +
+            text.table(["", *partition_worth.NAMES.values(), "one thread", "two threads",
+                        *(f"{workers} workers" for workers in SHOWN_WORKERS)], lines) + f"\n\n{_model(rows)}")
 
 
 def semantic(stored):
@@ -112,11 +121,13 @@ def semantic(stored):
     rows = _worth_rows(stored, "semantic parts", "parts")
     kinds = (partition_worth.WHOLE, partition_worth.RUNS, partition_worth.FOUND, partition_worth.UNCUT)
     lines = [[f"{scene.replace('_', ' ')}, {bodies} bodies, {count} rows", partition_worth.NAMES[solver],
-              *(f"{text.number(of_kind[kind].time_ms)} ({_partition(of_kind[kind])}: {_parts(of_kind[kind])})" if kind in of_kind else "-" for kind in kinds),
+              *(f"{text.number(of_kind[kind].time_ms)} ({_partition(of_kind[kind])}: {_parts(of_kind[kind])})"
+                if kind in of_kind else "-" for kind in kinds),
               _fastest(of_kind)] for ((scene, bodies, _), count, solver), of_kind in partition_worth.kinds(rows).items()]
-    return (f"Least t_pr + t_s, ms, one thread, of parts after the groups of bodies that the scene names (`semantic`: whole, and cut into runs), of all "
-            f"parts that are found from the graph, and of partitions that cut no row, each with its best size and refiner (`{WORTH[1]}`; {stored.origin(WORTH[0])}). "
-            f"{_rule(rows)}:\n\n" + text.table(["", "kernel", *kinds, "fastest"], lines))
+    return ("Least t_pr + t_s, ms, one thread, of parts after the groups of bodies that the scene names (`semantic`: whole, "
+            "and cut into runs), of all parts that are found from the graph, and of partitions that cut no row, each with its "
+            f"best size and refiner (`{WORTH[1]}`; {stored.origin(WORTH[0])}). {_rule(rows)}:\n\n" +
+            text.table(["", "kernel", *kinds, "fastest"], lines))
 
 
 def _shares(of_solver):
@@ -137,22 +148,27 @@ def partition_share(stored):
         shares = {partition: _shares(of_solver) for partition, of_solver in of_problem.items()}
         told += shares.values()
         lines.append([f"{scene.replace('_', ' ')}, {bodies} bodies, {count} rows, cfm {float(cfm):g}",
-                      *(" / ".join(map(_of_hundred, shares[partition])) if partition in shares else "-" for partition in partition_worth.SHARED)])
+                      *(" / ".join(map(_of_hundred, shares[partition])) if partition in shares else "-"
+                        for partition in partition_worth.SHARED)])
     held = [sum(share <= asked for share in of_side) for of_side, asked in zip(zip(*told), partition_worth.ASKED_SHARES)]
     asked = " and ".join(f"{100 * share:.0f} %" for share in partition_worth.ASKED_SHARES)
-    return (f"t_pr as a share of t_s, %, one thread, with the paper's kernel / with the fastest one (`{WORTH[1]}`; {stored.origin(WORTH[0])}); aimed at are {asked}, which "
-            f"{held[0]} and {held[1]} of {len(told)} cells keep:\n\n" + text.table(["", *map(_named, partition_worth.SHARED)], lines))
+    return (f"t_pr as a share of t_s, %, one thread, with the paper's kernel / with the fastest one (`{WORTH[1]}`; "
+            f"{stored.origin(WORTH[0])}); aimed at are {asked}, which {held[0]} and {held[1]} of {len(told)} cells keep:\n\n" +
+            text.table(["", *map(_named, partition_worth.SHARED)], lines))
 
 
 def regret_of_auto(stored):
     """auto against the best cell of its grid."""
     found = regret.regrets(need(stored.table(*REGRET), "auto", "replay"))
-    lines = [[f"{item.scene.replace('_', ' ')}, {item.solver}", item.best, *map(text.number, (item.best_ms, item.baseline_ms, item.auto_ms)),
+    lines = [[f"{item.scene.replace('_', ' ')}, {item.solver}", item.best,
+              *map(text.number, (item.best_ms, item.baseline_ms, item.auto_ms)),
               f"{100 * item.regret:+.0f} %", ", ".join(item.choices), "yes" if item.holds else "no"] for item in found]
-    return (f"t_pr + t_s, ms, one thread ({stored.origin(REGRET[0])}); `auto` holds where it takes at most {1 + regret.MOST_REGRET:g} times what the "
-            f"best cell takes and no more than {regret.BASELINE}. `{regret.ANY_KERNEL}` chooses the kernel too, against the cells of all kernels, whose replays are put at "
+    return (f"t_pr + t_s, ms, one thread ({stored.origin(REGRET[0])}); `auto` holds where it takes at most "
+            f"{1 + regret.MOST_REGRET:g} times what the best cell takes and no more than {regret.BASELINE}. "
+            f"`{regret.ANY_KERNEL}` chooses the kernel too, against the cells of all kernels, whose replays are put at "
             f"the pace of `{regret.WHOLE}` in each. The time of choosing, once a scene, is left out:\n\n" +
             text.table(["", "best cell", "its time", regret.BASELINE, "auto", "regret", "auto chose", "holds"], lines))
 
 
-BLOCKS = {"over_time": over_time, "worth": worth, "semantic": semantic, "partition_share": partition_share, "regret": regret_of_auto}
+BLOCKS = {"over_time": over_time, "worth": worth, "semantic": semantic, "partition_share": partition_share,
+          "regret": regret_of_auto}

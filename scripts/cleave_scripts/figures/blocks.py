@@ -84,9 +84,10 @@ def _without_said(rows, column):
 
 
 def _setup(manifest, keys):
-    """(option or column, value) of all that has to be the same in another block of the same setup, the processor too. What nothing
-    that ran has, such as parts where nobody splits, is left out."""
+    """(option or column, value) of all that has to be the same in another block of the same setup, the processor too. What
+    nothing that ran has, such as parts where nobody splits, is left out."""
     about = options_about(manifest)
-    options = {"machine": processor(manifest)} | {name: str(value) for name, value in manifest.get("options", {}).items() if about.get(name) in SETUP}
+    options = ({"machine": processor(manifest)} |
+               {name: str(value) for name, value in manifest.get("options", {}).items() if about.get(name) in SETUP})
     columns = {column: str(keys[column].iloc[0]) for column in keys if column != "threads"}
     return frozenset((options | {column: value for column, value in columns.items() if value != NOT_A_PARAMETER}).items())

@@ -89,8 +89,8 @@ def same_setup_with(blocks, scene, solver, partitioners):
 
 
 def merged_runs(group):
-    """All rows of a group, each step of a seed once: where a run was repeated, with the medians of its times; repeats that failed do not
-    count beside others."""
+    """All rows of a group, each step of a seed once: where a run was repeated, with the medians of its times; repeats that
+    failed do not count beside others."""
     rows = pandas.concat([part.rows for part in group], ignore_index=True)
     keys = [
         column for column in ("seed", "step", "partitioner", "refiner", "label") if column in rows.columns

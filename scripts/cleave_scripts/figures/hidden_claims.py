@@ -21,12 +21,13 @@ def judged_claims(paper):
 
 
 def outcome_by_cut(claim, found, setting):
-    """Of a gain: whether there are fewer interface rows; how large a gain in time is, they do not say. Where nothing is cut, they say
-    nothing."""
+    """Of a gain: whether there are fewer interface rows; how large a gain in time is, they do not say.
+    Where nothing is cut, they say nothing."""
     by_own_column = claim.statistic == OTHER_STATISTIC
 
     def value(cell):
-        return numpy.float64(getattr(found.row(setting, cell, CUT), claim.column) if by_own_column else found.value(setting, cell, CUT))
+        return numpy.float64(getattr(found.row(setting, cell, CUT), claim.column) if by_own_column else
+                             found.value(setting, cell, CUT))
 
     with numpy.errstate(divide="ignore", invalid="ignore"):
         figure = float(claim.figure(value))

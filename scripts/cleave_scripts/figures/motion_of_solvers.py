@@ -13,9 +13,9 @@ def motion(data):
     if data.tree.motions is None:
         raise NoData("no tradeoff_motion.csv with rows; scripts/tradeoff writes one")
     return draw_motions(data.tree.motions), (
-        "Scenes that one solver alone has moved: joint drift, or penetration where there are no joints, and the height of the middle of the mass over that "
-        f"under {EXACT}, means over the second half of the measured steps, against the mean t_s of a step, of all substeps where it has several. A line joins "
-        "what differs in sweeps, iterations or substeps alone.")
+        "Scenes that one solver alone has moved: joint drift, or penetration where there are no joints, and the height of the "
+        f"middle of the mass over that under {EXACT}, means over the second half of the measured steps, against the mean t_s "
+        "of a step, of all substeps where it has several. A line joins what differs in sweeps, iterations or substeps alone.")
 
 
 def draw_motions(found):
@@ -47,8 +47,8 @@ def _few_ticks(axis):
 
 
 def _looks(found):
-    return {family: {"linewidth": 0.9, "linestyle": looks.LINES[place // len(looks.CYCLE)], "markersize": 4, **look, "color": looks.readable(look["color"]),
-                     **SPECIAL.get(family, {})}
+    return {family: {"linewidth": 0.9, "linestyle": looks.LINES[place // len(looks.CYCLE)], "markersize": 4, **look,
+                     "color": looks.readable(look["color"]), **SPECIAL.get(family, {})}
             for place, (family, look) in enumerate(looks.marks(dict.fromkeys(of.family for of in found)).items())}
 
 

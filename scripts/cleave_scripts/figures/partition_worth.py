@@ -1,4 +1,5 @@
-"""Speed-up against workers, each kernel with the best partition that cuts, and the whole system, from round to round; a panel a problem."""
+"""Speed-up against workers, each kernel with the best partition that cuts, and the whole system, from round to round;
+a panel a problem."""
 from cleave_scripts.figures import looks, style
 from cleave_scripts.measurements.partition_worth import NAMES, WORKERS
 

@@ -9,10 +9,11 @@ from cleave_scripts.results.names import base_name, title
 from cleave_scripts.table import text
 
 # Scene, bodies and cfm of each panel; the first of several steps counts.
-PANELS = (("rock_pile", 200, 1e-4), ("rock_pile", 200, 1e-8), ("large_rock_pile", 600, 1e-6), ("log_tower", 201, 1e-6), ("chain_drop", 100, 1e-6),
-          ("crane", 124, 1e-10))
+PANELS = (("rock_pile", 200, 1e-4), ("rock_pile", 200, 1e-8), ("large_rock_pile", 600, 1e-6), ("log_tower", 201, 1e-6),
+          ("chain_drop", 100, 1e-6), ("crane", 124, 1e-10))
 COLUMNS = 3
-COLOURS = tuple(looks.CYCLE[place] for place in (0, 1, 2, 4, 9, 5, 10, 6, 3, 7))  # those that are told apart best, as thin lines, first
+# Those that are told apart best, as thin lines, first.
+COLOURS = tuple(looks.CYCLE[place] for place in (0, 1, 2, 4, 9, 5, 10, 6, 3, 7))
 NAME_SIZE = 6.5
 NAME_HEIGHT = 0.075  # of a panel, of a name beside it
 
@@ -21,9 +22,10 @@ def price(data):
     """Figure of the report, with its caption."""
     found = measured(data)
     return draw_price(found), (
-        f"Six recorded steps, {threads_in_words(found[0].threads)}. What factors or pivots has one time for all residuals and is named at the right, also "
-        "where it refused the step, as it has more rows than that takes, or failed; a solver that iterates was told to stop at each residual (divided by "
-        "the largest free velocity where that is above 1 m/s) and is drawn as far as it got.")
+        f"Six recorded steps, {threads_in_words(found[0].threads)}. What factors or pivots has one time for all residuals and "
+        "is named at the right, also where it refused the step, as it has more rows than that takes, or failed; a solver that "
+        "iterates was told to stop at each residual (divided by the largest free velocity where that is above 1 m/s) and is "
+        "drawn as far as it got.")
 
 
 def shown(found):
@@ -41,7 +43,8 @@ def draw_price(found):
     figure, axes = style.panels(len(picked), COLUMNS, 2.35)
     looked = _looks(picked)
     for ax, problem in zip(axes, picked):
-        ax.set_title(f"{title(problem.scene)}, cfm {text.power(problem.cfm)}\n{problem.bodies} bodies, {problem.rows} rows", fontsize=8)
+        ax.set_title(f"{title(problem.scene)}, cfm {text.power(problem.cfm)}\n{problem.bodies} bodies, {problem.rows} rows",
+                     fontsize=8)
         scale(ax)
         for method, look in looked.items():
             _curve(ax, problem.times_ms[method], look)
@@ -62,7 +65,8 @@ def _looks(picked):
         base = base_name(method)
         lines[base] = lines.get(base, -1) + 1
         found[method] = {"color": looks.readable(COLOURS[list(lines).index(base) % len(COLOURS)]), "linewidth": 1.2,
-                         "linestyle": looks.LINES[lines[base] % len(looks.LINES)], "marker": looks.MARKERS[place % len(looks.MARKERS)]}
+                         "linestyle": looks.LINES[lines[base] % len(looks.LINES)],
+                         "marker": looks.MARKERS[place % len(looks.MARKERS)]}
     return found
 
 
@@ -87,7 +91,8 @@ def _direct(ax, problem):
     heights = apart([NAME_HEIGHT * place for place in range(len(notes))] +
                     [max((math.log(time) - low) / (high - low), NAME_HEIGHT * len(notes)) for time, _ in there], NAME_HEIGHT)
     names = [(note, {"color": style.FAILED}) for note in reversed(notes)]
-    names += [(_name(method), {"color": style.INK, "fontweight": "bold" if method == EXACT else "normal"}) for _, method in there]
+    names += [(_name(method), {"color": style.INK, "fontweight": "bold" if method == EXACT else "normal"})
+              for _, method in there]
     for height, (name, look) in zip(heights, names):
         ax.text(1.02, height, name, transform=ax.transAxes, va="center", fontsize=NAME_SIZE, **look)
 

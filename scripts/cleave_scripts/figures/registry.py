@@ -1,8 +1,9 @@
 """The figures of the report, in its order. A new figure is one file and one row here."""
 import dataclasses
 
-from cleave_scripts.figures import (interface_cost, kernel_value, ladder_map, motion_of_solvers, price_of_accuracy, speed_up, stages,
-                                    times_by_combination, time_to_accuracy, times_by_size, times_by_step, trade_off, verdict_map)
+from cleave_scripts.figures import (interface_cost, kernel_value, ladder_map, motion_of_solvers, price_of_accuracy, speed_up,
+                                    stages, times_by_combination, time_to_accuracy, times_by_size, times_by_step,
+                                    trade_off, verdict_map)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -22,7 +23,8 @@ FIGURES = (
     Figure("trade_off", "What accuracy costs: time against error", trade_off.draw),
     Figure("price_of_accuracy", "What accuracy costs: by every solver on six steps", price_of_accuracy.price),
     Figure("time_to_accuracy", "What accuracy costs: time to every residual", time_to_accuracy.times),
-    Figure("crossover", "What accuracy costs: where the exact solver overtakes those that iterate", time_to_accuracy.crossovers),
+    Figure("crossover", "What accuracy costs: where the exact solver overtakes those that iterate",
+           time_to_accuracy.crossovers),
     Figure("accuracy_profile", "What accuracy costs: how near each solver is to the fastest", time_to_accuracy.profiles),
     Figure("tradeoff_motion", "What accuracy costs: what becomes of a scene that one solver moves", motion_of_solvers.motion),
     Figure("ladder", "The stability ladder: where each solver fails first", ladder_map.draw),

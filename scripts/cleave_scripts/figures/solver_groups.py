@@ -20,8 +20,8 @@ def groups(blocks):
 
 
 def _alike(blocks):
-    """[((scene, setup, threads), blocks)]: setups in which nothing has two values are one, for a solver that splits nothing says nothing of
-    parts."""
+    """[((scene, setup, threads), blocks)]: setups in which nothing has two values are one, for a solver that splits nothing
+    says nothing of parts."""
     found = []
     for block in blocks:
         if block.is_scaling or block.is_motion:

@@ -46,12 +46,14 @@ def scene_tables(data):
 def _rows(group):
     """The rows of a scene as Table 1 wants them: where a run was repeated, with the medians of its times, as in the figures."""
     written = [[block.experiment.table_rows[index] for index in block.rows.index] for block in group]
-    merged = merged_runs([dataclasses.replace(block, rows=block.rows.assign(written=rows)) for block, rows in zip(group, written)])
+    merged = merged_runs([dataclasses.replace(block, rows=block.rows.assign(written=rows))
+                          for block, rows in zip(group, written)])
     return [_row(row) for _, row in merged.iterrows()]
 
 
 def _row(merged):
-    times = {name: repr(float(merged[name])) for name in merged["written"] if name.endswith("_ms") and pandas.notna(merged[name])}
+    times = {name: repr(float(merged[name])) for name in merged["written"]
+             if name.endswith("_ms") and pandas.notna(merged[name])}
     return Row(merged["written"] | times, merged["written"].path, merged["written"].line)
 
 

@@ -1,5 +1,5 @@
-"""Time against the residual asked for, a panel a problem; where the exact solver overtakes the others; and how often each solver is how near to
-the fastest."""
+"""Time against the residual asked for, a panel a problem; where the exact solver overtakes the others; and how often each
+solver is how near to the fastest."""
 import math
 
 from cleave_scripts.figures import looks, style
@@ -31,21 +31,23 @@ def times(data):
     """Figure of the report, with its caption."""
     found = measured(data)
     return draw_times(found), (
-        f"Recorded steps, soft and stiff, {threads_in_words(found[0].threads)}. A solver that iterates was told to stop at each residual (divided by the largest free velocity where "
-        "that is above 1 m/s) and is drawn as far as it got; what factors has one time for all residuals that it reaches.")
+        f"Recorded steps, soft and stiff, {threads_in_words(found[0].threads)}. A solver that iterates was told to stop at "
+        "each residual (divided by the largest free velocity where that is above 1 m/s) and is drawn as far as it got; what "
+        "factors has one time for all residuals that it reaches.")
 
 
 def crossovers(data):
     return draw_crossover(measured(data)), (
-        f"Rock piles of which one thing changes: t_pr + t_s of the fastest solver that iterates over that of {EXACT}, by the residual it was told to stop at. "
-        f"Above 1 {EXACT} is faster; a point at the upper edge stands for never.")
+        f"Rock piles of which one thing changes: t_pr + t_s of the fastest solver that iterates over that of {EXACT}, by the "
+        f"residual it was told to stop at. Above 1 {EXACT} is faster; a point at the upper edge stands for never.")
 
 
 def profiles(data):
     return draw_profiles(measured(data)), (
-        "Share of the recorded steps that a solver takes to a residual in so many times the time of the fastest (Dolan and More, Mathematical "
-        "Programming 91, 2002). In the legend: on how many steps it never got to 1e-2, 1e-4, 1e-6 and 1e-8 m/s, and how many it "
-        "refused, as they have more rows than it takes; in the curves these count as steps on which it never got there.")
+        "Share of the recorded steps that a solver takes to a residual in so many times the time of the fastest (Dolan and "
+        "More, Mathematical Programming 91, 2002). In the legend: on how many steps it never got to 1e-2, 1e-4, 1e-6 and 1e-8 "
+        "m/s, and how many it refused, as they have more rows than it takes; in the curves these count as steps on which it "
+        "never got there.")
 
 
 def draw_times(found):
@@ -57,7 +59,8 @@ def draw_times(found):
             reached = [limit for limit in LIMITS if not math.isinf(times[limit])]
             ax.plot(reached, [times[limit] for limit in reached],
                     **looked[method], markersize=2.6)
-        ax.set_title(f"{problem.place}\n{problem.rows} rows, cfm {problem.cfm:g}{', settled' if problem.is_settled else ''}", fontsize=7.5)
+        ax.set_title(f"{problem.place}\n{problem.rows} rows, cfm {problem.cfm:g}{', settled' if problem.is_settled else ''}",
+                     fontsize=7.5)
         ax.set(xlabel="residual, m/s", ylabel=TIME)
         scale(ax)
     style.legend_above(figure, legend_lines(looked), columns=4)
@@ -75,7 +78,8 @@ def scale(ax):
 
 
 def draw_crossover(found):
-    """The fastest solver that iterates as a multiple of exact, a panel an axis and a line a limit; at the upper edge where none got there."""
+    """The fastest solver that iterates as a multiple of exact, a panel an axis and a line a limit;
+    at the upper edge where none got there."""
     figure, axes = style.panels(len(crossover.AXES), 3, 2.6, sharey=True)
     colours = looks.shades(len(crossover.LIMITS))
     points = {axis: axis.problems(found) for axis in crossover.AXES}
@@ -88,7 +92,8 @@ def draw_crossover(found):
             continue  # nothing that a logarithm could be taken of
         for limit, colour in zip(crossover.LIMITS, colours):
             ax.plot([axis.of(problem) for problem in points[axis]],
-                    [min(problem.against_exact(limit), top) for problem in points[axis]], color=colour, marker="o", markersize=3)
+                    [min(problem.against_exact(limit), top) for problem in points[axis]], color=colour,
+                    marker="o", markersize=3)
         ax.axhline(1, color=style.INK, linewidth=0.8)
         ax.set(xscale="log", yscale="log")
         if axis.of(points[axis][-1]) < 100 * axis.of(points[axis][0]):  # hardly a power of ten in it: the points themselves
@@ -96,7 +101,8 @@ def draw_crossover(found):
             ax.xaxis.set_minor_locator(style.matplotlib.ticker.NullLocator())
             ax.xaxis.set_major_formatter(style.matplotlib.ticker.FuncFormatter(lambda value, _: style.short(value)))
     axes[0].set_ylabel(f"fastest that iterates over exact,\n{TIME.removesuffix(', ms')} (above 1 exact is faster)")
-    style.legend_above(figure, [style.matplotlib.lines.Line2D([], [], color=colour, marker="o", markersize=3, label=f"to {text.power(limit)} m/s")
+    style.legend_above(figure, [style.matplotlib.lines.Line2D([], [], color=colour, marker="o", markersize=3,
+                                                              label=f"to {text.power(limit)} m/s")
                                 for limit, colour in zip(crossover.LIMITS, colours)], columns=len(colours))
     return figure
 
@@ -117,11 +123,13 @@ def draw_profiles(found):
                     **{name: looked[method][name] for name in ("color", "linewidth", "linestyle")})
         ax.set(xscale="log", xlabel="times the fastest", ylabel="share of the problems", ylim=(-0.03, 1.03))
         ax.set_title(f"residual {text.power(limit)} m/s")
-    style.legend_above(figure, legend_lines(looked, {method: f"{method} ({_left_out(found, method)})" for method in looked}), columns=2)
+    style.legend_above(figure, legend_lines(looked, {method: f"{method} ({_left_out(found, method)})" for method in looked}),
+                       columns=2)
     return figure
 
 
 def _left_out(found, method):
     """How often it never got there, and how often it did not try."""
     refused = refusals(found, method)
-    return f"never: {'/'.join(str(failures(found, method, limit)) for limit in PROFILED)}" + (f"; refused: {refused}" if refused else "")
+    return (f"never: {'/'.join(str(failures(found, method, limit)) for limit in PROFILED)}" +
+            (f"; refused: {refused}" if refused else ""))

@@ -55,7 +55,8 @@ class Tree:
 
 
 def read_tree(directory):
-    """Everything below a directory: any number of steps.csv, and one ladder.csv; in it, what is known of hidden choices and of the price of accuracy."""
+    """Everything below a directory: any number of steps.csv, and one ladder.csv; in it, what is known of hidden choices and of
+    the price of accuracy."""
     directory = pathlib.Path(directory)
     if not directory.is_dir():
         raise ResultError(f"{directory}: no such directory")
@@ -166,7 +167,8 @@ def _read_accuracy(path, tree):
     tree.messages += notes
     kept = accuracy.of_whole_steps(rows)
     if len(kept) < len(rows):
-        tree.messages.append(f"{path}: {len(rows) - len(kept)} of {len(rows)} rows are of steps that do not have every solve and are left out")
+        tree.messages.append(f"{path}: {len(rows) - len(kept)} of {len(rows)} rows are of steps that do not have every solve "
+                             "and are left out")
     found = accuracy.problems(kept)
     if not all(accuracy.EXACT in problem.times_ms for problem in found):
         raise ResultError(f"{path}: no solver {accuracy.EXACT}")

@@ -1,4 +1,5 @@
-"""The verdict map: every claim of the paper against what the paper leaves open, as the share of the settings in which it holds."""
+"""The verdict map: every claim of the paper against what the paper leaves open,
+as the share of the settings in which it holds."""
 import numpy
 
 from cleave_scripts.figures import style
@@ -51,7 +52,8 @@ def _cells(ax, shares, texts):
     image = ax.pcolormesh(numpy.ma.masked_invalid(shares), cmap="cividis", vmin=0, vmax=1, edgecolors="white", linewidth=0.8)
     for (y, x), text in numpy.ndenumerate(texts):
         if text:
-            ax.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=5.5, color="white" if shares[y, x] < 0.55 else style.INK)
+            ax.text(x + 0.5, y + 0.5, text, ha="center", va="center", fontsize=5.5,
+                    color="white" if shares[y, x] < 0.55 else style.INK)
     ax.invert_yaxis()
     ax.grid(False)
     ax.tick_params(length=0)
@@ -82,7 +84,8 @@ def _caption(rows):
     sums = rows.groupby("by")[["holds", "fails", "cannot_tell"]].sum().sum(axis=1)
     claims = rows.groupby("by").apply(lambda mine: len(mine[["claim", "row"]].drop_duplicates()))
     told = " and ".join(f"{sums[by] // claims[by]} by {BY[by]}" for by in BY if by in sums)
-    return (f"Every claim of the paper that is about cells of its Table 1, in {told} settings: n_max, the order in which bodies are "
-            "numbered, bfs that begins anew for each part or not, three thresholds of mr and three of mix. Bodies are in "
-            "the scene's order, or in a random one. Yellow: holds in all; dark blue: in none; else per cent; white: it cannot be told. Interface rows are the same on every machine; they are no times, and of a gain of stated size "
+    return (f"Every claim of the paper that is about cells of its Table 1, in {told} settings: n_max, the order in which "
+            "bodies are numbered, bfs that begins anew for each part or not, three thresholds of mr and three of mix. Bodies "
+            "are in the scene's order, or in a random one. Yellow: holds in all; dark blue: in none; else per cent; white: it "
+            "cannot be told. Interface rows are the same on every machine; they are no times, and of a gain of stated size "
             "they only say whether there is one.")

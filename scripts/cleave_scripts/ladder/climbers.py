@@ -14,7 +14,8 @@ class Climber:
     own_bounds: bool = False  # it finds its own friction bounds
 
 
-CLIMBERS = {entry["name"]: Climber(**entry) for entry in tomllib.loads((DATA / "ladder.toml").read_text(encoding="utf-8"))["climber"]}
+CLIMBERS = {entry["name"]: Climber(**entry)
+            for entry in tomllib.loads((DATA / "ladder.toml").read_text(encoding="utf-8"))["climber"]}
 OWN_BOUNDS = tuple(climber.name for climber in CLIMBERS.values() if climber.own_bounds)
 
 

@@ -147,7 +147,8 @@ def no_closed_form(_settings, _steps):
 QUICK_CFM = ("1e-2", "1e-5", "1e-8", "1e-12", "1e-14", "0")
 QUICK_RATIO = ("1", "100", "1e4", "1e6")
 
-# What must come out, and the values of the quick ladder. A stack is climbed in two set-ups, the second under this name with _off_axis.
+# What must come out, and the values of the quick ladder. A stack is climbed in two set-ups,
+# the second under this name with _off_axis.
 STACKS = {
     "heavy_top": (heavy_top, QUICK_RATIO),
     "alternating": (alternating, QUICK_RATIO),

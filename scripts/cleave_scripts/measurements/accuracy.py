@@ -1,9 +1,10 @@
 """What scripts/tradeoff measured: how long every solver takes to a residual, and what its answers do to a motion.
 
 A residual is held against a limit as the judge does it: divided by max(1, largest free velocity). A solver that iterates was
-told to stop at each limit (`@until`), as far as it got: its sweeps for the next would be the same again. Of its solves that are within
-a limit the fastest counts. A direct solver has one time for all limits that its residual meets. Where no solve is within a limit the time
-is infinite: never. A solver that refuses a step, which has more rows than it takes, has not failed on it and is counted apart.
+told to stop at each limit (`@until`), as far as it got: its sweeps for the next would be the same again. Of its solves that are
+within a limit the fastest counts. A direct solver has one time for all limits that its residual meets. Where no solve is within
+a limit the time is infinite: never. A solver that refuses a step, which has more rows than it takes, has not failed on it and
+is counted apart.
 """
 import dataclasses
 import math
@@ -12,8 +13,8 @@ from cleave_scripts.results.names import NO_PARTITIONER, said_parameters
 from cleave_scripts.results.rows import combination, has_parts, relative_residual, total_ms
 
 KEY = ("series", "scene", "bodies", "mass_ratio", "cfm", "step")
-NEEDED = (*KEY, "rows", "solver", "partitioner", "refiner", "iterations", "residual_m_per_s", "largest_free_velocity_m_per_s", "t_pr_ms",
-          "t_s_ms", "status")
+NEEDED = (*KEY, "rows", "solver", "partitioner", "refiner", "iterations", "residual_m_per_s", "largest_free_velocity_m_per_s",
+          "t_pr_ms", "t_s_ms", "status")
 COLUMNS = (*NEEDED, "threads", "kinetic_energy_j")  # files of earlier commits lack the last two
 SETTLED = "settled"  # series of piles that have come to rest
 DRAWN = ("paper", "mechanisms", "default", SETTLED)  # series with a panel a problem
@@ -29,8 +30,9 @@ BUDGET = ("until", "sweeps", "quickstep-iterations")  # parameters that say how 
 
 @dataclasses.dataclass(frozen=True)
 class Problem:
-    """One recorded step. times_ms: {method: {limit: ms, infinite for never}}; iterative: methods that were told how long to go on;
-    refused: those that did not try; threads: of its solves, as texts, of a file that has them; kinetic_energy_j: NaN where a file has none."""
+    """One recorded step. times_ms: {method: {limit: ms, infinite for never}}; iterative: methods that were told how long to go
+    on; refused: those that did not try; threads: of its solves, as texts, of a file that has them; kinetic_energy_j: NaN where
+    a file has none."""
     key: tuple
     rows: int
     times_ms: dict
@@ -124,7 +126,8 @@ def within(row, limit):
 
 
 def sweep_costs(rows):
-    """{solver that iterates: [ns a row and sweep]} of its solves of at least LEAST_SWEEPS sweeps, beside which preparation counts for little."""
+    """{solver that iterates: [ns a row and sweep]} of its solves of at least LEAST_SWEEPS sweeps,
+    beside which preparation counts for little."""
     found = {}
     for row in rows:
         if until(row) is None:
@@ -144,8 +147,8 @@ def _key(row):
 
 
 def of_whole_steps(rows):
-    """The rows of steps that have every solve, of a solver with limits down to the least or to one that it did not get to: a table that was
-    cut short ends with a step that has not."""
+    """The rows of steps that have every solve, of a solver with limits down to the least or to one that it did not get to: a
+    table that was cut short ends with a step that has not."""
     steps = {}
     for row in rows:
         steps.setdefault(_key(row), []).append(row)
@@ -179,7 +182,8 @@ def _problem(key, rows):
         for limit in LIMITS:
             if within(row, limit):
                 reached[limit] = min(reached[limit], total_ms(row))
-    return Problem(key, int(rows[0]["rows"]), times, tuple(iterative), tuple(method for method, found in statuses.items() if found == {"refused"}),
+    return Problem(key, int(rows[0]["rows"]), times, tuple(iterative),
+                   tuple(method for method, found in statuses.items() if found == {"refused"}),
                    threads_of(rows), float(rows[0].get("kinetic_energy_j", "nan")))
 
 
@@ -189,7 +193,8 @@ def threads_of(rows):
 
 
 def threads_in_words(threads):
-    return "one thread" if threads == ("1",) else f"{' or '.join(threads)} threads" if threads else "number of threads not recorded"
+    return ("one thread" if threads == ("1",) else f"{' or '.join(threads)} threads" if threads else
+            "number of threads not recorded")
 
 
 def solved(found, limit):

@@ -32,13 +32,15 @@ class Bounds:
 
 
 def bounds_of(rows):
-    return [_of_scene(scene, [row for row in rows if row["scene"] == scene]) for scene in dict.fromkeys(row["scene"] for row in rows)]
+    return [_of_scene(scene, [row for row in rows if row["scene"] == scene])
+            for scene in dict.fromkeys(row["scene"] for row in rows)]
 
 
 def _of_scene(scene, rows):
     frozen = {int(row["bound_sweeps"]): row for row in rows if row["start"] == FROZEN}
     carried, = (row for row in rows if row["start"] == CONVERGED)
-    return Bounds(scene=scene.replace("_", " "), mismatches={sweeps: float(frozen[sweeps]["bound_mismatch"]) for sweeps in sorted(frozen)},
+    return Bounds(scene=scene.replace("_", " "),
+                  mismatches={sweeps: float(frozen[sweeps]["bound_mismatch"]) for sweeps in sorted(frozen)},
                   carried=float(carried["bound_mismatch"]), unsettled=int(carried["unsettled"]),
                   **{name: float(frozen[DEFAULT_SWEEPS][name]) for name in ("t_s_ms", "sweep_ms")})
 
@@ -50,13 +52,15 @@ def _sweeps(count):
 def _line(bounds):
     cells = [text.number(100 * mismatch) + (f" ({text.number(100 * bounds.cost(sweeps))})" if sweeps != DEFAULT_SWEEPS else "")
              for sweeps, mismatch in bounds.mismatches.items()]
-    return [bounds.scene, text.number(bounds.t_s_ms), text.number(bounds.sweep_ms), text.number(CHEAP * bounds.t_s_ms / bounds.sweep_ms), *cells,
+    return [bounds.scene, text.number(bounds.t_s_ms), text.number(bounds.sweep_ms),
+            text.number(CHEAP * bounds.t_s_ms / bounds.sweep_ms), *cells,
             f"{text.number(100 * bounds.carried)} ({bounds.unsettled})"]
 
 
 def table(rows):
     scenes = bounds_of(rows)
-    header = ["scene", "t_s, ms", "a sweep, ms", f"sweeps in {text.percent(CHEAP)} of t_s", *map(_sweeps, scenes[0].mismatches), "converged"]
+    header = ["scene", "t_s, ms", "a sweep, ms", f"sweeps in {text.percent(CHEAP)} of t_s",
+              *map(_sweeps, scenes[0].mismatches), "converged"]
     return text.table(header, [_line(bounds) for bounds in scenes])
 
 
@@ -64,8 +68,8 @@ def verdict(rows):
     scenes = bounds_of(rows)
     halved = [bounds for bounds in scenes if bounds.halving is not None]
     cheap = [f"{bounds.scene} by {_sweeps(bounds.halving)}" for bounds in halved if bounds.cost(bounds.halving) <= CHEAP]
-    dear = [f"{text.number(100 * bounds.cost(bounds.halving))} % on {bounds.scene} ({_sweeps(bounds.halving)})" for bounds in halved
-            if bounds.cost(bounds.halving) > CHEAP]
+    dear = [f"{text.number(100 * bounds.cost(bounds.halving))} % on {bounds.scene} ({_sweeps(bounds.halving)})"
+            for bounds in halved if bounds.cost(bounds.halving) > CHEAP]
     never = [bounds.scene for bounds in scenes if bounds.halving is None]
     carried = [bounds.scene for bounds in scenes if bounds.halves(bounds.carried)]
     return " ".join([f"Halved at no more than {text.percent(CHEAP)} of t_s: on {text.listed(cheap)}.",

@@ -11,7 +11,8 @@ from cleave_scripts.results.errors import ResultError, last_line
 from cleave_scripts.results.steps import load_steps
 
 # The smallest run there is: a box that falls, one step, one row.
-CELL = {"scene": "ladder_free", "boxes": 1, "steps": 1, "measure-every": 1, "repeats": 1, "solver": "exact", "partitioner": "mindp", "refiner": "none"}
+CELL = {"scene": "ladder_free", "boxes": 1, "steps": 1, "measure-every": 1, "repeats": 1, "solver": "exact",
+        "partitioner": "mindp", "refiner": "none"}
 COLUMNS = ("what", "cells", "round", "seconds", "peak_memory_mb")
 EXPAND, RESUME, WITHOUT_INDEX, COLLECT = "expand", "resume", "resume_without_index", "collect"
 PROCESSES, RUNS, SOLVES = "paper_processes", "paper_runs", "paper_solves"
@@ -30,7 +31,8 @@ def campaign_of(cells, out):
 def measured(words, options):
     """(seconds, peak memory in MB) of a program that ends well."""
     start_s = time.monotonic()
-    with subprocess.Popen([*map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, **options) as process:
+    with subprocess.Popen([*map(str, words)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+                          **options) as process:
         said = process.stderr.read()
         _, status, usage = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
@@ -63,7 +65,8 @@ def _cost(program, campaign, what, out):
 
 
 def times_of(directory):
-    """Rows with the seconds of all processes of a campaign, of the runs in them, and of every solve and partition they timed."""
+    """Rows with the seconds of all processes of a campaign, of the runs in them,
+    and of every solve and partition they timed."""
     rows = [row for row in index_rows(directory) if row["number"] != "0"]
     seconds = {PROCESSES: sum(float(row["process_s"]) for row in rows), RUNS: sum(float(row["run_s"]) for row in rows),
                SOLVES: sum(map(_solves_s, campaign_cells(directory)))}

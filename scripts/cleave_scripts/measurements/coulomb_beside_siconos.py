@@ -1,4 +1,5 @@
-"""Coulomb's law as solved here and by Siconos: the same recorded steps, from the same warm start, both answers judged by both."""
+"""Coulomb's law as solved here and by Siconos: the same recorded steps, from the same warm start,
+both answers judged by both."""
 import csv
 import math
 
@@ -27,8 +28,9 @@ THEIRS = ("siconos-nsgs@peer-iterations=50000", "siconos-newton@peer-iterations=
 TOLERANCE = 1e-10  # that Siconos is run to, in its own error
 OUR_ERROR_LIMIT, THEIR_RESIDUAL_LIMIT_M_PER_S, VELOCITY_LIMIT_M_PER_S = 1e-8, 1e-6, 1e-6
 MU_LIMIT = 0.5  # up to which velocities have to agree
-COLUMNS = ("scene", "bodies", "step", "cfm", "mu", "contacts", "rows", "rows_bilateral", "status", "residual_m_per_s", "siconos_error",
-           "peer", "peer_status", "peer_iterations", "peer_residual_m_per_s", "peer_siconos_error", "velocity_difference_m_per_s")
+COLUMNS = ("scene", "bodies", "step", "cfm", "mu", "contacts", "rows", "rows_bilateral", "status", "residual_m_per_s",
+           "siconos_error", "peer", "peer_status", "peer_iterations", "peer_residual_m_per_s", "peer_siconos_error",
+           "velocity_difference_m_per_s")
 PROBLEM = ("scene", "step", "cfm", "mu")
 
 
@@ -38,15 +40,16 @@ def measure(program, peers, scratch, scenes=SCENES):
         for cfm in CFMS:
             say(f"{scene}, cfm {cfm}")
             for mu in MUS:
-                files = record(program, scratch / "steps", scene, STEPS, *SCENES[scene], "--friction", "coulomb", "--advance", "exact", "--cfm", cfm,
-                               "--mu", mu, all_ok=False)
+                files = record(program, scratch / "steps", scene, STEPS, *SCENES[scene], "--friction", "coulomb",
+                               "--advance", "exact", "--cfm", cfm, "--mu", mu, all_ok=False)
                 for row in _solved(peers, scratch / "solved", files):
                     yield {**row, "cfm": cfm, "mu": mu}
 
 
 def _solved(peers, directory, files):
     solvers = (OURS, *THEIRS)
-    rows = replay(peers, directory, files, "--solver", ",".join(solvers), "--repeats", 1, "--peer-tolerance", TOLERANCE, "--write-solutions")
+    rows = replay(peers, directory, files, "--solver", ",".join(solvers), "--repeats", 1, "--peer-tolerance", TOLERANCE,
+                  "--write-solutions")
     for number, file in enumerate(files):
         ours, *theirs = rows[len(solvers) * number:len(solvers) * (number + 1)]
         if ours.integer("contacts") == 0:
@@ -57,13 +60,14 @@ def _solved(peers, directory, files):
             found = errors.get(peer["solver"], {})
             yield {**{name: ours[name] for name in COLUMNS if name in ours}, "siconos_error": our_error,
                    "peer": base_name(peer["solver"]), "peer_status": peer["status"], "peer_iterations": peer["iterations"],
-                   "peer_residual_m_per_s": found.get("residual_m_per_s", "nan"), "peer_siconos_error": found.get("siconos_error", "nan"),
+                   "peer_residual_m_per_s": found.get("residual_m_per_s", "nan"),
+                   "peer_siconos_error": found.get("siconos_error", "nan"),
                    "velocity_difference_m_per_s": found.get("velocity_difference_m_per_s", "nan") if OURS in errors else "nan"}
 
 
 def _errors(peers, file):
-    """{solver: what Siconos says of its stored solution}; ours, where it stored one, is the first by name, which velocities are compared
-    with."""
+    """{solver: what Siconos says of its stored solution}; ours, where it stored one, is the first by name,
+    which velocities are compared with."""
     told = file.with_suffix(".csv")
     with open(told, "w", encoding="utf-8") as out:
         run([peers, "siconos-error", file], stdout=out)
@@ -126,7 +130,8 @@ def _scene_lines(rows):
 
 
 SCENE_HEADER = ("scene", "cfm", "contacts", "solved by us", "largest error of ours", "by their Gauss-Seidel", "by their Newton",
-                "largest residual of theirs, m/s", "pairs compared", f"velocity difference, mu <= {MU_LIMIT}", f"mu > {MU_LIMIT}")
+                "largest residual of theirs, m/s", "pairs compared", f"velocity difference, mu <= {MU_LIMIT}",
+                f"mu > {MU_LIMIT}")
 
 
 def scene_table(rows):
@@ -147,21 +152,24 @@ def counts(rows):
     def within(of, column, limit):
         return f"{sum(float(row[column]) <= limit for row in of)} of {len(of)}"
 
-    return (f"{len(first)} problems. Solved by us: {len(ours)}; of these Siconos's error is at most {text.power(OUR_ERROR_LIMIT)} on "
-            f"{within(ours, 'siconos_error', OUR_ERROR_LIMIT)}, of all on {within(first, 'siconos_error', OUR_ERROR_LIMIT)}. Siconos's solvers came "
-            f"to {text.power(TOLERANCE)} {len(theirs)} of {len(rows)} times; of these our residual is at most {text.power(THEIR_RESIDUAL_LIMIT_M_PER_S)} m/s on "
-            f"{within(theirs, 'peer_residual_m_per_s', THEIR_RESIDUAL_LIMIT_M_PER_S)}. Where both were solved, no velocity differs by more than "
-            f"{text.power(VELOCITY_LIMIT_M_PER_S)} m/s or rad/s on {within(compared, 'velocity_difference_m_per_s', VELOCITY_LIMIT_M_PER_S)} with mu <= {MU_LIMIT} and on "
-            f"{within(rough, 'velocity_difference_m_per_s', VELOCITY_LIMIT_M_PER_S)} with a larger one. Solved by a solver of Siconos and not by us: "
-            f"{only_theirs} problems; by us alone: {only_ours}.")
+    return (f"{len(first)} problems. Solved by us: {len(ours)}; of these Siconos's error is at most "
+            f"{text.power(OUR_ERROR_LIMIT)} on {within(ours, 'siconos_error', OUR_ERROR_LIMIT)}, of all on "
+            f"{within(first, 'siconos_error', OUR_ERROR_LIMIT)}. Siconos's solvers came to {text.power(TOLERANCE)} "
+            f"{len(theirs)} of {len(rows)} times; of these our residual is at most {text.power(THEIR_RESIDUAL_LIMIT_M_PER_S)} "
+            f"m/s on {within(theirs, 'peer_residual_m_per_s', THEIR_RESIDUAL_LIMIT_M_PER_S)}. Where both were "
+            f"solved, no velocity differs by more than {text.power(VELOCITY_LIMIT_M_PER_S)} m/s or rad/s on "
+            f"{within(compared, 'velocity_difference_m_per_s', VELOCITY_LIMIT_M_PER_S)} with mu <= {MU_LIMIT} and on "
+            f"{within(rough, 'velocity_difference_m_per_s', VELOCITY_LIMIT_M_PER_S)} with a larger one. Solved by a solver of "
+            f"Siconos and not by us: {only_theirs} problems; by us alone: {only_ours}.")
 
 
-BEYOND_HEADER = (*PROBLEM, "peer", "what", "our residual, m/s", "our error", "their residual, m/s", "their error", "velocity difference")
+BEYOND_HEADER = (*PROBLEM, "peer", "what", "our residual, m/s", "our error", "their residual, m/s", "their error",
+                 "velocity difference")
 _MEASURES = ("residual_m_per_s", "siconos_error", "peer_residual_m_per_s", "peer_siconos_error", "velocity_difference_m_per_s")
 
 
 def beyond_table(rows):
     """Every row that is beyond a limit, or that one side did not solve."""
-    found = [[*(row[name] for name in (*PROBLEM, "peer")), ", ".join(words), *(text.number(float(row[name])) for name in _MEASURES)]
-             for row in rows if (words := list(beyond(row)))]
+    found = [[*(row[name] for name in (*PROBLEM, "peer")), ", ".join(words),
+              *(text.number(float(row[name])) for name in _MEASURES)] for row in rows if (words := list(beyond(row)))]
     return text.table(BEYOND_HEADER, found)

@@ -23,7 +23,8 @@ class Axis:
         return sorted(filter(self.holds, piles), key=self.of)
 
 
-AXES = (Axis("rows", f"mass ratio 1, cfm {CFM:g}", lambda problem: problem.rows, lambda problem: problem.mass_ratio == 1 and problem.cfm == CFM),
+AXES = (Axis("rows", f"mass ratio 1, cfm {CFM:g}", lambda problem: problem.rows,
+             lambda problem: problem.mass_ratio == 1 and problem.cfm == CFM),
         Axis("mass ratio", f"{BODIES} bodies, cfm {CFM:g}", lambda problem: problem.mass_ratio,
              lambda problem: problem.bodies == BODIES and problem.cfm == CFM),
         Axis("cfm, s/kg", f"{BODIES} bodies, mass ratio 1", lambda problem: problem.cfm,
@@ -31,15 +32,16 @@ AXES = (Axis("rows", f"mass ratio 1, cfm {CFM:g}", lambda problem: problem.rows,
 
 
 def _crossing(before, after):
-    """The value at which a ratio passes 1 between two (value, ratio), by straight lines in logarithms; a ratio that is infinite does so
-    in the middle."""
+    """The value at which a ratio passes 1 between two (value, ratio), by straight lines in logarithms; a ratio that is infinite
+    does so in the middle."""
     (low, first), (high, second) = before, after
     share = 0.5 if math.isinf(first) or math.isinf(second) else math.log(first) / (math.log(first) - math.log(second))
     return low * (high / low)**share
 
 
 def exact_is_faster(points):
-    """[(from, to)] of the values of an axis where a ratio is 1 or more; None: to the end. points: (value, ratio), ascending, one at least."""
+    """[(from, to)] of the values of an axis where a ratio is 1 or more; None: to the end. points: (value, ratio),
+    ascending, one at least."""
     found, start = [], None
     for before, after in itertools.pairwise(points):
         if (before[1] >= 1) == (after[1] >= 1):

@@ -59,7 +59,8 @@ def _clock_ratios(graphs, name):
     """{graph: interface rows over those of CLOCK}, graphs of TIMED_BODIES."""
     least, most = TIMED_BODIES
     return {graph: cut_of(cells[name]) / cut_of(cells[CLOCK]) for graph, cells in graphs.items()
-            if name in cells and least <= cells[name]["bodies"] <= most and cut_of(cells[name]) is not None and cut_of(cells.get(CLOCK))}
+            if name in cells and least <= cells[name]["bodies"] <= most and cut_of(cells[name]) is not None and
+            cut_of(cells.get(CLOCK))}
 
 
 def _is_near_peers(cells, name):
@@ -70,25 +71,29 @@ def _is_near_peers(cells, name):
 
 def _mean_and_worst(ratios_by_graph):
     worst = max(ratios_by_graph, key=ratios_by_graph.get)
-    return f"{statistics.geometric_mean(ratios_by_graph.values()):.3f}, most {ratios_by_graph[worst]:.3f} on {worst.replace('_', ' ')}"
+    return (f"{statistics.geometric_mean(ratios_by_graph.values()):.3f}, most {ratios_by_graph[worst]:.3f} on "
+            f"{worst.replace('_', ' ')}")
 
 
 def _targets_of_best(graphs):
     found = ratios(graphs, BEST)
     far = [graph.replace("_", " ") for graph, cells in graphs.items() if not _is_near_peers(cells, BEST)]
     return [(f"`effort=best` cuts at most what the best peer cuts, in the mean: {found.rows:.3f}", found.rows <= 1),
-            (f"on no graph more than {round(100 * WORST - 100)} % or {WORST_ROWS} rows more: {', '.join(far) or 'none'}", not far),
+            (f"on no graph more than {round(100 * WORST - 100)} % or {WORST_ROWS} rows more: {', '.join(far) or 'none'}",
+             not far),
             (f"and is no slower than METIS recursive: {found.least_speed:.2f} times as fast at least", found.least_speed >= 1)]
 
 
 def _targets_of_fast(graphs):
     found, rows = ratios(graphs, FAST), _clock_ratios(graphs, FAST)
     within = sum(ratio <= FAST_ROWS for ratio in rows.values())
-    return [(f"`effort=fast` is at least {FAST_SPEED} times as fast as METIS recursive on graphs of {TIMED_BODIES[0]} to {TIMED_BODIES[1]} bodies: "
-             f"{found.least_speed:.2f}", found.least_speed >= FAST_SPEED),
-            (f"with at most {FAST_ROWS} times its rows in the mean: {_mean_and_worst(rows)}", statistics.geometric_mean(rows.values()) <= FAST_ROWS),
+    return [(f"`effort=fast` is at least {FAST_SPEED} times as fast as METIS recursive on graphs of {TIMED_BODIES[0]} to "
+             f"{TIMED_BODIES[1]} bodies: {found.least_speed:.2f}", found.least_speed >= FAST_SPEED),
+            (f"with at most {FAST_ROWS} times its rows in the mean: {_mean_and_worst(rows)}",
+             statistics.geometric_mean(rows.values()) <= FAST_ROWS),
             (f"and on every one of these graphs: {within} of {len(rows)}", within == len(rows)),
-            (f"a body takes at most {MOST_GROWTH} times as long at 100000 as at 1000: {found.growth:.2f}", found.growth <= MOST_GROWTH)]
+            (f"a body takes at most {MOST_GROWTH} times as long at 100000 as at 1000: {found.growth:.2f}",
+             found.growth <= MOST_GROWTH)]
 
 
 def _targets_of_mended(graphs, name):
@@ -102,7 +107,8 @@ def _targets_of_mended(graphs, name):
 
 def targets(graphs):
     """[(what was asked and what was found, whether that holds)]"""
-    return [*_targets_of_best(graphs), *_targets_of_fast(graphs), *(target for name in MENDED for target in _targets_of_mended(graphs, name))]
+    return [*_targets_of_best(graphs), *_targets_of_fast(graphs),
+            *(target for name in MENDED for target in _targets_of_mended(graphs, name))]
 
 
 def _time_per_body(graphs, graph, name):

@@ -1,5 +1,5 @@
-"""Arithmetic of a factorisation in the order of METIS's nested dissection, of the pattern of a recorded problem: counted from the file
-alone, by the library and by numpy, and by nothing of the program."""
+"""Arithmetic of a factorisation in the order of METIS's nested dissection, of the pattern of a recorded problem: counted from
+the file alone, by the library and by numpy, and by nothing of the program."""
 import ctypes
 
 import h5py

@@ -1,5 +1,6 @@
-"""How far the bounds that a box freezes are from mu times the normal impulses of its own solution, by the Gauss-Seidel sweeps that predict
-them, and what a sweep costs; and how far mu times the converged impulses of the step before would be, without any sweep."""
+"""How far the bounds that a box freezes are from mu times the normal impulses of its own solution, by the Gauss-Seidel sweeps
+that predict them, and what a sweep costs; and how far mu times the converged impulses of the step before would be, without any
+sweep."""
 import math
 import statistics
 
@@ -12,8 +13,8 @@ from cleave_scripts.results.paper import SCENES
 from cleave_scripts.results.programs import record, replay, run
 from cleave_scripts.results.steps import load_steps
 
-COLUMNS = ("scene", "bodies", "start", "bound_sweeps", "steps", "unsolved", "unsettled", "rows", "bound_mismatch", "friction_beyond_share", "t_s_ms",
-           "sweep_ms")
+COLUMNS = ("scene", "bodies", "start", "bound_sweeps", "steps", "unsolved", "unsettled", "rows", "bound_mismatch",
+           "friction_beyond_share", "t_s_ms", "sweep_ms")
 FROZEN, CONVERGED = "frozen", "converged"  # the bounds of the step before, whose impulses the sweeps start from
 DEFAULT_SWEEPS = 5  # of the program
 SWEEPS = (0, 1, 2, DEFAULT_SWEEPS, 10, 20, 50, 200)
@@ -35,8 +36,8 @@ def bound_rows(program, scratch, steps, scenes=SCENES):
 
 
 def _frozen(program, directory, scene, sweeps, steps):
-    run([program, "run", "--scene", scene, *steps, "--friction", f"box@bound-sweeps={sweeps}", "--solver", f"exact,{TIMED}", "--threads", 1,
-         "--repeats", 1, "--out", directory, "--force"], allowed=(0, 2))
+    run([program, "run", "--scene", scene, *steps, "--friction", f"box@bound-sweeps={sweeps}", "--solver", f"exact,{TIMED}",
+         "--threads", 1, "--repeats", 1, "--out", directory, "--force"], allowed=(0, 2))
     rows = load_steps(directory / "steps.csv")[0]
     timed = {row["step"]: row.number("t_s_ms") / TIMED_SWEEPS for row in rows if row["solver"] == TIMED}
     exact = [{**row, "sweep_ms": timed[row["step"]]} for row in rows if row["solver"] == "exact"]
@@ -44,21 +45,24 @@ def _frozen(program, directory, scene, sweeps, steps):
 
 
 def _converged(program, scratch, scene, at):
-    """Every file starts from the impulses of the step before, whichever steps are recorded. On two threads, which give the same steps sooner."""
-    files = record(program, scratch / "converged", scene, at, "--advance", "exact", "--repeats", 1, "--threads", 2, "--friction", CONVERGED_MODEL,
-                   all_ok=False)
+    """Every file starts from the impulses of the step before, whichever steps are recorded. On two threads,
+    which give the same steps sooner."""
+    files = record(program, scratch / "converged", scene, at, "--advance", "exact", "--repeats", 1, "--threads", 2,
+                   "--friction", CONVERGED_MODEL, all_ok=False)
     rows = replay(program, scratch / "solved", files, *EXACT, "--threads", 1, "--write-solutions")
-    kept = [{**row, "bound_mismatch": carried_mismatch(scratch / "solved" / file.name), "friction_beyond_share": math.nan, "sweep_ms": math.nan}
-            for file, row in zip(files, rows, strict=True)]
+    kept = [{**row, "bound_mismatch": carried_mismatch(scratch / "solved" / file.name), "friction_beyond_share": math.nan,
+             "sweep_ms": math.nan} for file, row in zip(files, rows, strict=True)]
     return _row(kept, start=CONVERGED, bound_sweeps=0, unsettled=sum(row.number("bound_mismatch") > SETTLED for row in rows))
 
 
 def _row(rows, **others):
     """Of the steps that are solved and in which a contact carries anything."""
     counted = [row for row in rows if row["status"] == "ok" and not math.isnan(float(row["bound_mismatch"]))]
-    medians = {name: repr(_over(counted, name, statistics.median)) for name in ("bound_mismatch", "friction_beyond_share", "t_s_ms", "sweep_ms")}
+    medians = {name: repr(_over(counted, name, statistics.median))
+               for name in ("bound_mismatch", "friction_beyond_share", "t_s_ms", "sweep_ms")}
     return {"scene": rows[0]["scene"], "bodies": rows[0]["bodies"], **others, "steps": len(counted),
-            "unsolved": sum(row["status"] != "ok" for row in rows), "rows": repr(_over(counted, "rows", statistics.fmean)), **medians}
+            "unsolved": sum(row["status"] != "ok" for row in rows),
+            "rows": repr(_over(counted, "rows", statistics.fmean)), **medians}
 
 
 def _over(rows, name, middle):
@@ -66,8 +70,8 @@ def _over(rows, name, middle):
 
 
 def carried_mismatch(path):
-    """As the column bound_mismatch is for the bounds of a step, for mu times the normal impulses that a problem file starts from: against
-    those of the solution in it."""
+    """As the column bound_mismatch is for the bounds of a step, for mu times the normal impulses that a problem file starts
+    from: against those of the solution in it."""
     return mismatch_of(solved_arrays(path, ("warm_impulse", "friction_row", "friction_coefficient"), ("impulse",)))
 
 

@@ -1,7 +1,7 @@
 """What scripts/friction_cost runs: the same recorded steps under the box and under another friction model, in turn.
 
-Cones: rock piles at every decade of compliance, moved by the exact box, a few steps from zero impulses by the interior point alone.
-Coulomb's law: scenes that the law moves, every step from the impulses of the step before by `exact`.
+Cones: rock piles at every decade of compliance, moved by the exact box, a few steps from zero impulses by the interior point
+alone. Coulomb's law: scenes that the law moves, every step from the impulses of the step before by `exact`.
 """
 import dataclasses
 import pathlib
@@ -9,8 +9,9 @@ import pathlib
 from cleave_scripts.measurements.friction_law import friction_mismatch
 from cleave_scripts.results.programs import record, replay
 
-COLUMNS = ("scene", "bodies", "cfm", "step", "cold", "round", "friction", "solver", "rows", "iterations", "factorizations", "residual_m_per_s",
-           "largest_free_velocity_m_per_s", "bound_mismatch", "friction_mismatch", "t_s_ms", "t_s_waiting_ms", "status")
+COLUMNS = ("scene", "bodies", "cfm", "step", "cold", "round", "friction", "solver", "rows", "iterations", "factorizations",
+           "residual_m_per_s", "largest_free_velocity_m_per_s", "bound_mismatch", "friction_mismatch", "t_s_ms",
+           "t_s_waiting_ms", "status")
 BOX, CONE, LAW = "box", "cone", "coulomb"
 ROCKS = ("200", "600")
 CFMS = tuple(f"1e-{power}" for power in range(4, 15))
@@ -33,8 +34,8 @@ class Case:
 
     def record(self, program, directory):
         """On two threads, which give the same steps sooner."""
-        self.files = record(program, directory / self.name.replace(" ", "_"), self.scene, self.steps, "--advance", "exact", "--repeats", 1,
-                            "--threads", 2, *self.moved, all_ok=False)
+        self.files = record(program, directory / self.name.replace(" ", "_"), self.scene, self.steps, "--advance", "exact",
+                            "--repeats", 1, "--threads", 2, *self.moved, all_ok=False)
 
     def replay(self, program, directory, number):
         """A row a step with a constraint and model. The models take turns, and in rounds of an odd number the box begins."""
@@ -46,7 +47,8 @@ class Case:
     def _replayed(self, program, directory, files, model, number):
         """The impulses of the law are looked at in the first round; those of later ones are the same."""
         looked_at = LAW in self.models and number == 1
-        rows = replay(program, directory, files, *self.options, "--friction", model, "--threads", 1, *["--write-solutions"] * looked_at)
+        rows = replay(program, directory, files, *self.options, "--friction", model, "--threads", 1,
+                      *["--write-solutions"] * looked_at)
         for file, row in zip(files, rows, strict=True):
             if row.integer("rows") > 0:
                 mismatch = friction_mismatch(directory / pathlib.Path(file).name) if looked_at else float("nan")
@@ -54,8 +56,8 @@ class Case:
 
 
 def cone_cases(rocks, cfms):
-    return [Case(f"{bodies} rocks, cfm {cfm}", "rock_pile", CONE_STEPS, ("--bodies", bodies, "--cfm", cfm), (BOX, CONE), CONE_OPTIONS)
-            for bodies in rocks for cfm in cfms]
+    return [Case(f"{bodies} rocks, cfm {cfm}", "rock_pile", CONE_STEPS, ("--bodies", bodies, "--cfm", cfm), (BOX, CONE),
+                 CONE_OPTIONS) for bodies in rocks for cfm in cfms]
 
 
 def law_cases(scenes, steps):

@@ -1,13 +1,13 @@
-"""How far the friction of a solved step is from Coulomb's law, read from the arrays of a problem file with one solution, whatever model it
-was solved under.
+"""How far the friction of a solved step is from Coulomb's law, read from the arrays of a problem file with one solution,
+whatever model it was solved under.
 
-A contact with the normal impulse n (below zero counts as zero), tangent impulses t and slacks w of its tangent rows, and the largest
-diagonal entry d of J M^-1 J^T + C of its rows:
+A contact with the normal impulse n (below zero counts as zero), tangent impulses t and slacks w of its tangent rows, and the
+largest diagonal entry d of J M^-1 J^T + C of its rows:
 
     friction_mismatch = sum |t - P(t - w / d)| / sum mu n        P: the nearest point of the disc of radius mu n
 
-which is zero where friction is mu n against the sliding of what slides, and at most mu n where nothing slides. What slides so slowly that
-less would stop it misses no more than that.
+which is zero where friction is mu n against the sliding of what slides, and at most mu n where nothing slides. What slides so
+slowly that less would stop it misses no more than that.
 """
 import h5py
 import numpy

@@ -1,5 +1,5 @@
-"""What becomes of a scene under each friction model, and what one step of it becomes: box with frozen bounds, box with bounds iterated to
-its own normal impulses, the convex cone, and Coulomb's law."""
+"""What becomes of a scene under each friction model, and what one step of it becomes: box with frozen bounds, box with bounds
+iterated to its own normal impulses, the convex cone, and Coulomb's law."""
 import h5py
 import numpy
 
@@ -12,16 +12,16 @@ from cleave_scripts.results.steps import load_steps
 
 MODELS = ("box", "box-converged", "cone", "coulomb")
 CONVERGED, LAW = "box-converged", "coulomb"
-# Models that are held against LAW in the same recorded steps, by the model that moved the scene there. Bounds converge while a scene is
-# moved, and files hold them: those steps are of another motion.
+# Models that are held against LAW in the same recorded steps, by the model that moved the scene there. Bounds converge while a
+# scene is moved, and files hold them: those steps are of another motion.
 MOVED_BY = {"box": ("box", "cone"), CONVERGED: (CONVERGED,)}
 IN_A_STEP = tuple(model for models in MOVED_BY.values() for model in models)
 RUN_OUT_SHARE = 0.95  # of the mass
 MEASURED = 10  # times a motion
 EXACT = ("--solver", "exact", "--repeats", 1)
-MOTION_COLUMNS = ("scene", "bodies", "friction", "step", "time_s", "height_m", "run_out_m", "kinetic_energy_j", "potential_energy_j",
-                  "max_penetration_m", "joint_drift_m", "bound_mismatch", "friction_beyond_share", "factorizations", "residual_m_per_s", "status",
-                  "unsolved_steps")
+MOTION_COLUMNS = ("scene", "bodies", "friction", "step", "time_s", "height_m", "run_out_m", "kinetic_energy_j",
+                  "potential_energy_j", "max_penetration_m", "joint_drift_m", "bound_mismatch", "friction_beyond_share",
+                  "factorizations", "residual_m_per_s", "status", "unsolved_steps")
 VELOCITY_COLUMNS = ("scene", "bodies", "step", "rows", "friction", "largest_difference_m_per_s", "rms_difference_m_per_s",
                     "rms_velocity_m_per_s", "factorizations", "status", "status_of_law")
 
@@ -53,13 +53,14 @@ def motion_rows(program, scratch, steps, scenes=SCENES):
         for model in MODELS:
             say(f"{scene} under {model}")
             every = max(1, steps // MEASURED)
-            run([program, "run", "--scene", scene, *EXACT, "--friction", model, "--steps", steps, "--measure-every", every, "--record-motion",
-                 "--out", scratch / "motion", "--force"], allowed=(0, 2))
+            run([program, "run", "--scene", scene, *EXACT, "--friction", model, "--steps", steps, "--measure-every", every,
+                 "--record-motion", "--out", scratch / "motion", "--force"], allowed=(0, 2))
             reached = places(scratch / "motion" / "motion.h5")
             unsolved = load_manifest(scratch / "motion")["result"]["inexact_advances"]
             for row in load_steps(scratch / "motion" / "steps.csv")[0]:
                 height, run_out = reached[row.integer("step")]
-                yield {**row, "friction": model, "height_m": repr(height), "run_out_m": repr(run_out), "unsolved_steps": unsolved}
+                yield {**row, "friction": model, "height_m": repr(height), "run_out_m": repr(run_out),
+                       "unsolved_steps": unsolved}
 
 
 def velocity_rows(program, scratch, steps, scenes=SCENES):

@@ -1,4 +1,5 @@
-"""What the rows of scripts/friction_cost come to: a line a rock pile and compliance under the cone, and a line a scene under Coulomb's law."""
+"""What the rows of scripts/friction_cost come to: a line a rock pile and compliance under the cone,
+and a line a scene under Coulomb's law."""
 import dataclasses
 import math
 import statistics
@@ -12,7 +13,8 @@ LAW_RATIO, LAW_MISMATCH, LAW_SHARE = 6, 1e-6, 0.95  # at most, at most, at least
 
 @dataclasses.dataclass(frozen=True)
 class Cost:
-    """Of the same steps under the box and under another model, which dictionaries are by. Times of a step are medians over the rounds."""
+    """Of the same steps under the box and under another model, which dictionaries are by.
+    Times of a step are medians over the rounds."""
     steps: int
     t_s_ms: dict  # mean over the steps
     ratios: tuple  # the other model over the box, a step each
@@ -89,15 +91,16 @@ def _cone_line(rocks, cfm, cost):
 
 
 def _law_line(scene, cost):
-    return [scene.replace("_", " "), cost.steps, *(text.number(cost.t_s_ms[model]) for model in (BOX, LAW)), f"{cost.ratio_of_sums(LAW):.2f}",
-            f"{cost.median_ratio:.2f}", *(_share(*cost.lawful(model)) for model in (BOX, LAW)), *(cost.unsolved[model] for model in (BOX, LAW)),
+    return [scene.replace("_", " "), cost.steps, *(text.number(cost.t_s_ms[model]) for model in (BOX, LAW)),
+            f"{cost.ratio_of_sums(LAW):.2f}", f"{cost.median_ratio:.2f}",
+            *(_share(*cost.lawful(model)) for model in (BOX, LAW)), *(cost.unsolved[model] for model in (BOX, LAW)),
             _verdict(cost.law_holds())]
 
 
-CONE_HEADER = ("rocks", "cfm", "steps", "box, ms", "cone, ms", "cone / box, median", "most", "most iterations, box", "cone", "above the limit, box",
-               "cone", "holds")
-LAW_HEADER = ("scene", "steps", "box, ms", "Coulomb, ms", "Coulomb / box, of sums", "median", f"within {text.power(LAW_MISMATCH)} of the law, box",
-              "Coulomb", "above the limit, box", "Coulomb", "holds")
+CONE_HEADER = ("rocks", "cfm", "steps", "box, ms", "cone, ms", "cone / box, median", "most", "most iterations, box", "cone",
+               "above the limit, box", "cone", "holds")
+LAW_HEADER = ("scene", "steps", "box, ms", "Coulomb, ms", "Coulomb / box, of sums", "median",
+              f"within {text.power(LAW_MISMATCH)} of the law, box", "Coulomb", "above the limit, box", "Coulomb", "holds")
 
 
 def waited(rows):
@@ -110,10 +113,11 @@ def markdown(rows):
     """Two texts: cones and Coulomb's law, each with how many of its lines hold; of what was not measured there is none."""
     cones, laws = cone_costs(rows), law_costs(rows)
     if cones:
-        yield (f"{sum(cost.cone_holds() for cost in cones.values())} of {len(cones)} hold: the cone takes at most {CONE_RATIO} times as long as the "
-               f"box (median over the steps), at most {CONE_ITERATIONS} iterations, and leaves no step above the limit.\n\n" +
-               text.table(CONE_HEADER, [_cone_line(*key, cost) for key, cost in cones.items()]))
+        yield (f"{sum(cost.cone_holds() for cost in cones.values())} of {len(cones)} hold: the cone takes at most {CONE_RATIO} "
+               f"times as long as the box (median over the steps), at most {CONE_ITERATIONS} iterations, and leaves no step "
+               "above the limit.\n\n" + text.table(CONE_HEADER, [_cone_line(*key, cost) for key, cost in cones.items()]))
     if laws:
-        yield (f"{sum(cost.law_holds() for cost in laws.values())} of {len(laws)} hold: at least {text.percent(LAW_SHARE)} of the steps are within "
-               f"{text.power(LAW_MISMATCH)} of Coulomb's law, at no more than {LAW_RATIO} times the time of the box, of sums and in the median.\n\n" +
+        yield (f"{sum(cost.law_holds() for cost in laws.values())} of {len(laws)} hold: at least {text.percent(LAW_SHARE)} of "
+               f"the steps are within {text.power(LAW_MISMATCH)} of Coulomb's law, at no more than {LAW_RATIO} times the time "
+               "of the box, of sums and in the median.\n\n" +
                text.table(LAW_HEADER, [_law_line(scene, cost) for scene, cost in laws.items()]))

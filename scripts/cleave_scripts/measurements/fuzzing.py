@@ -126,10 +126,13 @@ def page(out):
     kept = [out / f"{name}.json" for name in TARGETS]
     results = [Result(**json.loads(file.read_text(encoding="utf-8"))) for file in kept if file.exists()]
     found = sum(len(result.findings) for result in results)
-    header = ["target", "date", "commit", "minutes", "executions", "branches reached", "of the program's", "inputs kept", "findings"]
+    header = ["target", "date", "commit", "minutes", "executions", "branches reached", "of the program's",
+              "inputs kept", "findings"]
     lines = ["# The last runs of the fuzzers", "", f"`scripts/fuzz`: {counted(found, 'finding')}.", "",
-             text.table(header, [[result.target, result.date, result.commit, f"{result.minutes:.0f}", result.executions, result.edges,
-                                  result.edges_in_all, result.inputs, len(result.findings)] for result in results]),
-             "", "The program of a target holds code that it cannot reach: every solver, for instance. What each target reads and what",
+             text.table(header, [[result.target, result.date, result.commit, f"{result.minutes:.0f}", result.executions,
+                                  result.edges, result.edges_in_all, result.inputs, len(result.findings)]
+                                 for result in results]),
+             "", "The program of a target holds code that it cannot reach: every solver, for instance. What each target reads "
+                 "and what",
              "counts as a finding: [tests/fuzz/README.md](../../tests/fuzz/README.md).", ""]
     return "\n".join(lines)

@@ -1,8 +1,8 @@
 """What the paper leaves open, and under which choice the cells are ordered as its Table 1 orders them.
 
-A setting says how bodies are numbered, how many a part may have, whether bfs begins anew for every part, and the thresholds of mr and
-mix. Its 15 combinations are taken from the cells of the campaign `hidden-choices`, all scenes alike. The cut, in interface rows, is known
-of every setting; times of those whose cells were solved by the paper's solver with repeats.
+A setting says how bodies are numbered, how many a part may have, whether bfs begins anew for every part, and the thresholds of
+mr and mix. Its 15 combinations are taken from the cells of the campaign `hidden-choices`, all scenes alike. The cut, in
+interface rows, is known of every setting; times of those whose cells were solved by the paper's solver with repeats.
 """
 import dataclasses
 import itertools
@@ -12,7 +12,8 @@ import pandas
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.paper import COMBINATIONS, PAPER, SCENES
 
-BFS, MR, MIX = ("bfs", "bfs@restart=graph"), ("mr", "mr@tau-mr=10.5", "mr@tau-mr=101"), ("mix@tau-mix=0.25", "mix", "mix@tau-mix=0.75")
+BFS, MR, MIX = (("bfs", "bfs@restart=graph"), ("mr", "mr@tau-mr=10.5", "mr@tau-mr=101"),
+                ("mix@tau-mix=0.25", "mix", "mix@tau-mix=0.75"))
 CUT, TIME = "cut", "time"
 CELL = ("scene", "logs", "max_bodies", "body_order", "solver")
 MEANS = ("interface_rows", "parts", "t_s_ms", "t_pr_ms")
@@ -78,14 +79,17 @@ def _said_or_own(rows):
 def means(rows):
     """A row a cell and combination: COLUMNS."""
     groups = rows.groupby([*CELL, "partitioner", "refiner"], sort=False)
-    table = groups.agg(steps=("step", "count"), **{name: (name, "mean") for name in MEANS}, **{name: (name, "max") for name in MOST})
+    table = groups.agg(steps=("step", "count"), **{name: (name, "mean") for name in MEANS},
+                       **{name: (name, "max") for name in MOST})
     return table.reset_index()[list(COLUMNS)]
 
 
 def cells_of(table, setting, solver):
     """{scene: rows}"""
-    mine = table[(table["max_bodies"] == setting.max_bodies) & (table["body_order"] == setting.body_order) & (table["solver"] == solver)]
-    return {scene: mine[(mine["scene"] == scene) & ((scene != "log_tower") | (mine["logs"] == PAPERS_LOGS))] for scene in SCENES}
+    mine = table[(table["max_bodies"] == setting.max_bodies) & (table["body_order"] == setting.body_order) &
+                 (table["solver"] == solver)]
+    return {scene: mine[(mine["scene"] == scene) & ((scene != "log_tower") | (mine["logs"] == PAPERS_LOGS))]
+            for scene in SCENES}
 
 
 class Settings:
@@ -95,7 +99,8 @@ class Settings:
         self.all = settings(table)
         others = sorted(set(table["solver"]) - {PAPER["solver"]})
         if len(others) != 1:
-            raise ResultError(f"the campaign needs {PAPER['solver']} and one other solver, for the cuts; it has {', '.join(others) or 'none'}")
+            raise ResultError(f"the campaign needs {PAPER['solver']} and one other solver, for the cuts; it has "
+                              f"{', '.join(others) or 'none'}")
         self.cut_solver, = others
         self._lookup = {}
         for row in table.itertuples():
@@ -103,7 +108,8 @@ class Settings:
                 self._lookup[row.solver, row.scene, row.max_bodies, row.body_order, row.partitioner, row.refiner] = row
         timed = table[table["solver"] == PAPER["solver"]]
         self.timed = [setting for setting in self.all
-                      if not timed[(timed["max_bodies"] == setting.max_bodies) & (timed["body_order"] == setting.body_order)].empty]
+                      if not timed[(timed["max_bodies"] == setting.max_bodies) &
+                                   (timed["body_order"] == setting.body_order)].empty]
 
     def row(self, setting, cell, by):
         """Of the table of means; cell: (scene, partitioner, refiner) of the paper."""

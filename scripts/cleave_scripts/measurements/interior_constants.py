@@ -90,6 +90,8 @@ def markdown(found):
              f"{default.worst_m_per_s:.1e} m/s. Proximal: the first attempt ended above the limit, and proximal steps "
              "followed; shown where the number differs.", "",
              text.table(["constant", "value tried: factorisations (over those as it is)"],
-                        [[f"`{name}`", "; ".join(_cell(total, default) for total in values)] for name, values in constants.items()])]
+                        [[f"`{name}`", "; ".join(_cell(total, default) for total in values)]
+                         for name, values in constants.items()])]
     nothing = ", ".join(f"`{name}`" for name in buying_nothing(found)) or "none"
-    return "\n".join([*lines, "", f"Buys nothing here (less than {NOTHING:g} of the factorisations, and no problem): {nothing}."])
+    return "\n".join([*lines, "",
+                      f"Buys nothing here (less than {NOTHING:g} of the factorisations, and no problem): {nothing}."])

@@ -23,7 +23,8 @@ def cells_of(rows, scene):
     found = {}
     for row in rows:
         if row["scene"] == scene:
-            found.setdefault((row["partitioner"] if row["trials"] == "-" else int(row["trials"]), row["refiner"]), []).append(row)
+            found.setdefault((row["partitioner"] if row["trials"] == "-" else int(row["trials"]), row["refiner"]),
+                             []).append(row)
 
     def mean(steps, *columns):
         return statistics.fmean(sum(float(step[column]) for column in columns) for step in steps)

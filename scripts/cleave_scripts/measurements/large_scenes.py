@@ -1,5 +1,5 @@
-"""What scripts/large_scenes measured: one step of very large scenes by the exact solver, its factorisation beside a dense one of the
-same minute and beside nested dissection, and of rock piles sweeps of projected Gauss-Seidel over the same rows.
+"""What scripts/large_scenes measured: one step of very large scenes by the exact solver, its factorisation beside a dense one
+of the same minute and beside nested dissection, and of rock piles sweeps of projected Gauss-Seidel over the same rows.
 
 Rows whose solves waited for a core do not count where times are compared; a cell without another is told as not measured.
 """
@@ -18,8 +18,9 @@ DENSE_REPETITIONS = 3
 LEAST_DENSE_SHARE = 0.75  # asked of the factorisation of a silo
 MOST_RATIO = 1.6  # asked of a row and factorisation of a larger pile, against the smallest
 MOST_SWEEPS = {10000: 90}  # rocks: asked of t_s on one thread
-COLUMNS = ("scene", "bodies", "step", "solver", "threads", "round", "rows", "factorizations", "kinetic_energy_j", "t_s_ms", "t_s_waiting_ms",
-           "t_s_factor_local_ms", "factor_mflop_local", "factor_mflop_done", "dissection_mflop", "dense_gflop_per_s", "peak_memory_mb", "status")
+COLUMNS = ("scene", "bodies", "step", "solver", "threads", "round", "rows", "factorizations", "kinetic_energy_j", "t_s_ms",
+           "t_s_waiting_ms", "t_s_factor_local_ms", "factor_mflop_local", "factor_mflop_done", "dissection_mflop",
+           "dense_gflop_per_s", "peak_memory_mb", "status")
 
 
 def dense_rates(program, path):
@@ -103,7 +104,8 @@ def pile_lines(rows):
             asked.append(f"at most {MOST_SWEEPS[bodies]} sweeps: {_verdict(in_sweeps, in_sweeps <= MOST_SWEEPS[bodies])}")
         yield [bodies, threads, first["rows"], first["factorizations"], text.number(float(first["kinetic_energy_j"]) / bodies),
                text.number(_median(map(_t_s_ms, _timed(of_cell)))), text.number(_median(us.values())), text.two_decimals(ratio),
-               text.number(in_sweeps), f"{max(float(row['peak_memory_mb']) for row in of_cell) / 1e3:.2f}", "; ".join(asked) or "-"]
+               text.number(in_sweeps), f"{max(float(row['peak_memory_mb']) for row in of_cell) / 1e3:.2f}",
+               "; ".join(asked) or "-"]
 
 
 def silo_lines(rows):
@@ -112,15 +114,16 @@ def silo_lines(rows):
         first, timed = of_cell[0], _timed(of_cell)
         mflop, dissected = float(first["factor_mflop_local"]), float(first["dissection_mflop"])
         share = _median(map(_dense_share, timed))
-        yield [bodies, threads, first["rows"], first["factorizations"], text.number(_median(map(_t_s_ms, timed))), text.number(mflop / 1e3),
-               f"{mflop / dissected:.2f}", text.number(_median(map(_gflop_per_s, timed))), text.number(_median(map(_dense_gflop_per_s, timed))),
+        yield [bodies, threads, first["rows"], first["factorizations"], text.number(_median(map(_t_s_ms, timed))),
+               text.number(mflop / 1e3), f"{mflop / dissected:.2f}", text.number(_median(map(_gflop_per_s, timed))),
+               text.number(_median(map(_dense_gflop_per_s, timed))),
                text.percent(share), _verdict(share, share >= LEAST_DENSE_SHARE)]
 
 
-PILE_HEADER = ("rocks", "threads", "rows", "factorisations", "kinetic energy, J a rock", "t_s, ms", "µs a row and factorisation",
-               "against the smallest", "t_s in sweeps", "peak memory, GB", "asked")
-SILO_HEADER = ("boxes", "threads", "rows", "factorisations", "t_s, ms", "Gflop of one", "over METIS's", "Gflop/s", "dense, Gflop/s", "share",
-               f"asked {text.percent(LEAST_DENSE_SHARE)} or more")
+PILE_HEADER = ("rocks", "threads", "rows", "factorisations", "kinetic energy, J a rock", "t_s, ms",
+               "µs a row and factorisation", "against the smallest", "t_s in sweeps", "peak memory, GB", "asked")
+SILO_HEADER = ("boxes", "threads", "rows", "factorisations", "t_s, ms", "Gflop of one", "over METIS's", "Gflop/s",
+               "dense, Gflop/s", "share", f"asked {text.percent(LEAST_DENSE_SHARE)} or more")
 
 
 def markdown(rows):

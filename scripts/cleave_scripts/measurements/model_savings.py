@@ -14,8 +14,8 @@ class Case:
     steps: int | None = None  # None: as many as are asked for
 
 
-# The tower of the scene log_tower, whose ball is never let go. Friction with compliance creeps, so that a heap which it holds never
-# rests: the chain does without it.
+# The tower of the scene log_tower, whose ball is never let go. Friction with compliance creeps, so that a heap which it holds
+# never rests: the chain does without it.
 STANDING_TOWER = "standing_tower.toml"
 CASES = {
     "chain drop": Case(("--scene", "chain_drop")),
@@ -65,8 +65,9 @@ def savings(rows):
         full, auto = (_median_ms([row for row in mine if row["model"] == model]) for model in ("full", "auto"))
         planned = [row for row in mine if row["model"] == "auto"]
         total = sum(int(row["rows"]) for row in planned)
-        shares = (sum(int(row[f"model_rows_{name}"]) for row in planned) / total for name in ("left_out", "at_rest", "returned"))
+        shares = (sum(int(row[f"model_rows_{name}"]) for row in planned) / total
+                  for name in ("left_out", "at_rest", "returned"))
         ratios = [auto[step] / full[step] for step in full]
-        found[key] = Savings(statistics.fmean(full.values()), sum(auto.values()) / sum(full.values()), min(ratios), max(ratios), *shares,
-                             max(float(row["velocity_spread_m_per_s"]) for row in planned))
+        found[key] = Savings(statistics.fmean(full.values()), sum(auto.values()) / sum(full.values()), min(ratios), max(ratios),
+                             *shares, max(float(row["velocity_spread_m_per_s"]) for row in planned))
     return found

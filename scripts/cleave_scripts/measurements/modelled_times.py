@@ -93,8 +93,8 @@ def median_error(steps):
 
 def _line(step):
     scene, bodies, cfm, *rest = step.key
-    return [scene, bodies, f"{float(cfm):g}", *rest, *map(text.number, (step.one_ms, step.modelled_ms, step.measured_ms)), f"{100 * step.error:+.0f} %",
-            *map(text.number, step.more_ms)]
+    return [scene, bodies, f"{float(cfm):g}", *rest, *map(text.number, (step.one_ms, step.modelled_ms, step.measured_ms)),
+            f"{100 * step.error:+.0f} %", *map(text.number, step.more_ms)]
 
 
 def lines_of_steps(steps, waited):
@@ -110,7 +110,8 @@ def lines_of_steps(steps, waited):
         title = SLOW if slow else f"steps below {LEAST_MS} ms"
         of_medians = 100 * statistics.median(abs(step.median_error) for step in chosen)
         parts.append(f"{title[0].upper()}{title[1:]}: {len(chosen)}, median error {middle:.1f} %, from {least:+.0f} to "
-                     f"{most:+.0f} %; with medians over the rounds in place of the fastest, median error {of_medians:.1f} %.\n\n{text.table(HEADER, map(_line, chosen))}")
+                     f"{most:+.0f} %; with medians over the rounds in place of the fastest, median error "
+                     f"{of_medians:.1f} %.\n\n{text.table(HEADER, map(_line, chosen))}")
     parts.append(waited_in_words(waited))
     return "\n\n".join(parts)
 
@@ -136,7 +137,8 @@ def speed_ups(steps):
     for step in steps:
         if int(step.problem[1]) in ASKED:
             of_problem.setdefault(step.problem, []).append(step)
-    return [SpeedUp(min(found, key=lambda step: step.one_ms), min(found, key=lambda step: step.on_workers_ms)) for found in of_problem.values()]
+    return [SpeedUp(min(found, key=lambda step: step.one_ms), min(found, key=lambda step: step.on_workers_ms))
+            for found in of_problem.values()]
 
 
 def lines_of_speed_ups(steps):
@@ -150,7 +152,8 @@ def lines_of_speed_ups(steps):
     if not lines:
         return ""
     header = (*KEY[:-1], "fastest on one thread, ms", f"least modelled on {WORKERS}, ms", "speed-up", "asked")
-    return f"The fastest on one thread over the least modelled time on {WORKERS} workers, of any of these solvers:\n\n{text.table(header, lines)}"
+    return (f"The fastest on one thread over the least modelled time on {WORKERS} workers, of any of these "
+            f"solvers:\n\n{text.table(header, lines)}")
 
 
 def lines_of_costs(rows):

@@ -11,8 +11,8 @@ SCENES = ("chain_drop", "log_tower", "rock_pile", "large_rock_pile")
 SMALL = "rock_pile", 25  # scene and bodies: few enough rows for solvers whose time grows with their cube
 STEP_S = 1 / 60
 MEASURED = 10  # times a motion
-NEEDED = ("scene", "mover", "step", "time_s", "rows", "iterations", "residual_m_per_s", "max_penetration_m", "joint_drift_m", "height_m",
-          "kinetic_energy_j", "potential_energy_j", "t_s_ms", "status")
+NEEDED = ("scene", "mover", "step", "time_s", "rows", "iterations", "residual_m_per_s", "max_penetration_m", "joint_drift_m",
+          "height_m", "kinetic_energy_j", "potential_energy_j", "t_s_ms", "status")
 MOTION_COLUMNS = (*NEEDED, "bodies")  # files of earlier commits lack the last
 
 
@@ -27,9 +27,9 @@ class Mover:
     refiner: str = "none"
 
     def arguments(self, steps):
-        return ("--partitioner", self.partitioner, "--refiner", self.refiner, "--solver", self.solver, "--advance", self.solver, *self.options,
-                "--steps", steps * self.substeps, "--measure-every", max(1, steps // MEASURED) * self.substeps, "--dt",
-                repr(STEP_S / self.substeps))
+        return ("--partitioner", self.partitioner, "--refiner", self.refiner, "--solver", self.solver, "--advance", self.solver,
+                *self.options, "--steps", steps * self.substeps, "--measure-every", max(1, steps // MEASURED) * self.substeps,
+                "--dt", repr(STEP_S / self.substeps))
 
 
 def _quickstep(iterations, substeps):
@@ -44,19 +44,22 @@ MOVERS = (Mover("exact", "exact"),
             for sweeps in (20, 100, 500)),
           *(Mover(f"{name}, {SWEEPS} sweeps", f"{name}@sweeps={SWEEPS}") for name in OTHERS),
           *(_quickstep(iterations, 1) for iterations in (20, 100)), *(_quickstep(1, substeps) for substeps in (5, 20)))
-EXACT_AS_WELL = (Mover("interior-point:monolithic", "interior-point:monolithic"), Mover("schur, mix+fm", "schur", partitioner="mix", refiner="fm"))
+EXACT_AS_WELL = (Mover("interior-point:monolithic", "interior-point:monolithic"),
+                 Mover("schur, mix+fm", "schur", partitioner="mix", refiner="fm"))
 OF_FEW_ROWS = (Mover("lemke", "lemke"), Mover("ode-step", "ode-step"))  # which refuse more than their default
 OF_SMALL = (*MOVERS, *EXACT_AS_WELL, *OF_FEW_ROWS)
-CASES = (*((scene, (), MOVERS) for scene in SCENES), (SMALL[0], ("--bodies", SMALL[1]), OF_SMALL))  # scene, options, who moves it
+# Scene, options, who moves it.
+CASES = (*((scene, (), MOVERS) for scene in SCENES), (SMALL[0], ("--bodies", SMALL[1]), OF_SMALL))
 
 
 def motion_rows(program, scratch, steps):
-    """A row a scene, mover and measured step, as in steps.csv; `mover` is the mover's name, height_m that of the highest centre."""
+    """A row a scene, mover and measured step, as in steps.csv; `mover` is the mover's name,
+    height_m that of the highest centre."""
     for scene, options, movers in CASES:
         for mover in movers:
             say(f"{' '.join(map(str, (scene, *options)))} moved by {mover.name}")
-            run([program, "run", "--scene", scene, *options, *mover.arguments(steps), "--repeats", 1, "--record-motion", "--out",
-                 scratch / "motion", "--force"], allowed=(0, 2))
+            run([program, "run", "--scene", scene, *options, *mover.arguments(steps), "--repeats", 1, "--record-motion",
+                 "--out", scratch / "motion", "--force"], allowed=(0, 2))
             reached = places(scratch / "motion" / "motion.h5")
             for row in load_steps(scratch / "motion" / "steps.csv")[0]:
                 yield {**row, "mover": mover.name, "height_m": repr(reached[row.integer("step")][0])}

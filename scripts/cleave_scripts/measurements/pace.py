@@ -9,7 +9,8 @@ def place(row):
 
 
 def paces_of(rows, paces):
-    """{place(row): how much slower than usual the cells were there of which paces(row) says that all replays have them; their median}"""
+    """{place(row): how much slower than usual the cells were there of which paces(row) says that all replays have them;
+    their median}"""
     cells, slower = {}, {}
     for row in filter(paces, rows):
         cells.setdefault((row["step"], row["solver"], combination(row)), {})[place(row)] = total_ms(row)

@@ -1,5 +1,5 @@
-"""What scripts/partition_over_time measured: partitioning time and cut of parts that are taken over, against those of parts made anew
-in every step."""
+"""What scripts/partition_over_time measured: partitioning time and cut of parts that are taken over, against those of parts
+made anew in every step."""
 import collections
 import dataclasses
 
@@ -27,7 +27,8 @@ class Course:
 def course_of(steps):
     origins = collections.Counter(step["partition_origin"] for step in steps)
     return Course(sum(float(step["t_pr_ms"]) for step in steps), sum(float(step["t_s_ms"]) for step in steps),
-                  sum(int(step["interface_rows"]) for step in steps), {origin: origins[origin] / len(steps) for origin in ORIGINS})
+                  sum(int(step["interface_rows"]) for step in steps),
+                  {origin: origins[origin] / len(steps) for origin in ORIGINS})
 
 
 def courses(rows):

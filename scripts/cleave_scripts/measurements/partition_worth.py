@@ -1,13 +1,13 @@
 """What scripts/partition_worth measured: when a partition pays.
 
-The time of a cell is t_pr + t_s: on one thread and on two as measured, on more workers as modelled from the one-thread solve. In a
-round it is put at the pace of WHOLE_SYSTEM and of kernels with ONE_PART in the same replay. Of every kernel the partition counts that is
-fastest in the odd rounds, for each number of workers anew; its time is told from the even ones, by which it was not chosen. Where a
-partition cuts no row, as one part does, the cell is one of the whole system, whichever kernel solved it. Speed-ups are against the fastest
-on one thread.
+The time of a cell is t_pr + t_s: on one thread and on two as measured, on more workers as modelled from the one-thread solve.
+In a round it is put at the pace of WHOLE_SYSTEM and of kernels with ONE_PART in the same replay. Of every kernel the partition
+counts that is fastest in the odd rounds, for each number of workers anew; its time is told from the even ones, by which it was
+not chosen. Where a partition cuts no row, as one part does, the cell is one of the whole system, whichever kernel solved it.
+Speed-ups are against the fastest on one thread.
 
-One leads another where that takes longer by LEAST_LEAD in every even round. The fastest is what is so in the odd rounds, with all that it
-does not lead. Where a scene names groups of bodies, parts after them are held against those that are found.
+One leads another where that takes longer by LEAST_LEAD in every even round. The fastest is what is so in the odd rounds, with
+all that it does not lead. Where a scene names groups of bodies, parts after them are held against those that are found.
 """
 import dataclasses
 import statistics
@@ -20,8 +20,8 @@ from cleave_scripts.results.rows import combination, split_ms, total_ms
 KEY = ("scene", "bodies", "cfm")
 MODELLED = (2, 4, 8, 16, 32, 64)
 WORKERS = (1, *MODELLED)
-COLUMNS = (*KEY, "step", "rows", "solver", "partitioner", "refiner", "parts", "interface_rows", "threads", "status", "t_pr_ms", "t_s_ms",
-           *(f"t_s_model_p{workers}_ms" for workers in MODELLED), "round", "replay")
+COLUMNS = (*KEY, "step", "rows", "solver", "partitioner", "refiner", "parts", "interface_rows", "threads", "status", "t_pr_ms",
+           "t_s_ms", *(f"t_s_model_p{workers}_ms" for workers in MODELLED), "round", "replay")
 LEAST_LEAD = 0.03
 SEMANTIC = "semantic"
 WHOLE, RUNS, FOUND, UNCUT = "groups", "groups in runs", "found", "nothing cut"  # kinds of partitions
@@ -139,7 +139,8 @@ def _by_problem(rows):
 
 def problems(rows):
     """[Problem], by rows. rows: of two rounds or more."""
-    return [Problem(key, count, {1: _kernels(threads[1]), **{workers: _kernels(threads[1], _modelled_ms(workers)) for workers in MODELLED}},
+    return [Problem(key, count,
+                    {1: _kernels(threads[1]), **{workers: _kernels(threads[1], _modelled_ms(workers)) for workers in MODELLED}},
                     _kernels(threads[2])) for key, count, threads in _by_problem(rows)]
 
 
@@ -173,7 +174,8 @@ def partition_shares(rows):
         for (solver, partition), of_cell in _by_cell(threads[1]).items():
             if partition in SHARED:
                 share = statistics.median(split_ms(row) / float(row["t_s_ms"]) for row, _ in of_cell)
-                of_problem.setdefault(partition, {})[solver] = share, statistics.median(total_ms(row) / pace for row, pace in of_cell)
+                of_problem.setdefault(partition, {})[solver] = share, statistics.median(total_ms(row) / pace
+                                                                                        for row, pace in of_cell)
     return found
 
 
@@ -189,7 +191,8 @@ class ModelError:
 
 
 def _medians(rows, column):
-    return {names: statistics.median(float(row[column]) / pace for row, pace in of_cell) for names, of_cell in _by_cell(rows).items()}
+    return {names: statistics.median(float(row[column]) / pace for row, pace in of_cell)
+            for names, of_cell in _by_cell(rows).items()}
 
 
 def model_errors(rows):

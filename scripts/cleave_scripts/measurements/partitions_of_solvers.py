@@ -1,7 +1,8 @@
-"""Does a solver that iterates want other parts than a direct one? The same recorded steps, every partition, and what solvers make of it.
+"""Does a solver that iterates want other parts than a direct one? The same recorded steps, every partition,
+and what solvers make of it.
 
-A solver that iterates is told to stop at LIMIT; what counts is t_pr + t_s until then, and the number of its sweeps. It works on its
-parts in parallel, so it has two threads besides.
+A solver that iterates is told to stop at LIMIT; what counts is t_pr + t_s until then, and the number of its sweeps. It works on
+its parts in parallel, so it has two threads besides.
 """
 import math
 import statistics
@@ -35,8 +36,8 @@ def _cost(row, number):
 
 
 def _ratios(rows, number):
-    """{(partitioner, refiner): geometric mean over problems of its number against the least of all; infinite where one problem was
-    not solved to LIMIT}, of the rows of one solver."""
+    """{(partitioner, refiner): geometric mean over problems of its number against the least of all; infinite where one problem
+    was not solved to LIMIT}, of the rows of one solver."""
     of_problem = {}
     for row in rows:
         of_problem.setdefault(tuple(row[name] for name in KEY), {})[row["partitioner"], row["refiner"]] = _cost(row, number)
@@ -67,7 +68,8 @@ def _columns(rows):
 
 
 def compare(rows):
-    """{(solver, threads): {(partitioner, refiner): (ratio of t_pr + t_s, ratio of sweeps)}}; the latter NaN of direct solvers."""
+    """{(solver, threads): {(partitioner, refiner): (ratio of t_pr + t_s, ratio of sweeps)}};
+    the latter NaN of direct solvers."""
     found = {}
     for column, mine in _columns(rows).items():
         times = _ratios(mine, total_ms)
@@ -83,17 +85,20 @@ def best_parts(of_column):
 
 def _costs(rows, parts):
     """{problem: t_pr + t_s with that (partitioner, refiner)}"""
-    return {tuple(row[name] for name in KEY): _cost(row, total_ms) for row in rows if (row["partitioner"], row["refiner"]) == parts}
+    return {tuple(row[name] for name in KEY): _cost(row, total_ms)
+            for row in rows if (row["partitioner"], row["refiner"]) == parts}
 
 
 def _mean_ratio(costs, base):
-    ratios = [cost / base[problem] for problem, cost in costs.items() if math.isfinite(cost) and math.isfinite(base.get(problem, math.inf))]
+    ratios = [cost / base[problem] for problem, cost in costs.items()
+              if math.isfinite(cost) and math.isfinite(base.get(problem, math.inf))]
     return statistics.geometric_mean(ratios) if ratios else math.nan
 
 
 def in_parallel(rows, compared):
-    """{solver that iterates: (its best parts on two threads, their t_pr + t_s there over that of one part on one thread, the same over that
-    of the same parts on one)}, geometric means over the steps; none of a file without both numbers of threads."""
+    """{solver that iterates: (its best parts on two threads, their t_pr + t_s there over that of one part on one thread, the
+    same over that of the same parts on one)}, geometric means over the steps; none of a file without both numbers of
+    threads."""
     columns, found = _columns(rows), {}
     for solver in ITERATIVE:
         one, two = ((solver, threads) for threads in ("1", str(TWO)))

@@ -1,4 +1,5 @@
-"""What an exact answer costs by other people's solvers: the same recorded steps of settled rock piles by `exact` and by theirs, in turn."""
+"""What an exact answer costs by other people's solvers: the same recorded steps of settled rock piles by `exact` and by theirs,
+in turn."""
 import collections
 import dataclasses
 import math
@@ -12,8 +13,8 @@ from cleave_scripts.table import text
 ROCKS = (30, 80, 200)
 STEPS = (300, 350, 400)  # a pile has come to rest
 OURS = "exact"
-PEERS = ("bullet-dantzig", "bullet-lemke", "bullet-pgs@sweeps=100", "dart-dantzig", "dart-pgs@sweeps=100", "ipopt@peer-tolerance=1e-8",
-         "ipopt@peer-tolerance=1e-12")
+PEERS = ("bullet-dantzig", "bullet-lemke", "bullet-pgs@sweeps=100", "dart-dantzig", "dart-pgs@sweeps=100",
+         "ipopt@peer-tolerance=1e-8", "ipopt@peer-tolerance=1e-12")
 MUJOCO = {"mujoco-constraint": "t_constraint_ms", "mujoco-step": "t_step_ms"}  # solver: what cleave_mujoco calls its time
 REPEATS = 5  # of solves that are no process of their own
 MOST_ROWS = 5000  # of a problem; a peer takes 0.2 GB for such a matrix
@@ -41,20 +42,21 @@ class Step:
     def _theirs(self, program, directory, timeout_s):
         if not self.peers:
             return []
-        return replay(program, directory, [self.file], "--solver", ",".join(self.peers), "--threads", 1, "--repeats", 1, "--peer-max-rows",
-                      MOST_ROWS, "--peer-timeout-s", f"{timeout_s:g}")
+        return replay(program, directory, [self.file], "--solver", ",".join(self.peers), "--threads", 1, "--repeats", 1,
+                      "--peer-max-rows", MOST_ROWS, "--peer-timeout-s", f"{timeout_s:g}")
 
 
 def record_steps(program, directory, rocks):
-    files = record(program, directory / f"rocks_{rocks}", "rock_pile", STEPS, "--bodies", rocks, "--advance", "exact", "--repeats", 1,
-                   "--threads", 2)
+    files = record(program, directory / f"rocks_{rocks}", "rock_pile", STEPS, "--bodies", rocks, "--advance", "exact",
+                   "--repeats", 1, "--threads", 2)
     return [Step(file) for file in files]
 
 
 def mujoco_rows(row, result):
     """What cleave_mujoco said of a step, beside a row of it: another model, whose answers nobody judges."""
-    return [{"scene": row["scene"], "bodies": row["bodies"], "step": row["step"], "round": row["round"], "rows": result["rows"], "solver": solver,
-             "status": "-", "residual_m_per_s": "nan", "t_s_ms": result[column], "peer_timeout_s": "-"} for solver, column in MUJOCO.items()]
+    return [{"scene": row["scene"], "bodies": row["bodies"], "step": row["step"], "round": row["round"], "rows": result["rows"],
+             "solver": solver, "status": "-", "residual_m_per_s": "nan", "t_s_ms": result[column], "peer_timeout_s": "-"}
+            for solver, column in MUJOCO.items()]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -72,7 +74,8 @@ class Price:
 
     def status_in_words(self):
         steps = self.statuses.total()
-        return ", ".join(status if count == steps else f"{status} {count} of {steps}" for status, count in self.statuses.items())
+        return ", ".join(status if count == steps else f"{status} {count} of {steps}"
+                         for status, count in self.statuses.items())
 
 
 def _time_ms(row):
@@ -120,7 +123,8 @@ def growth(small, large):
 def _line(solver, of_piles):
     cells = [cell for price in of_piles
              for cell in (f"{price.said(price.t_s_ms)} ({price.said(price.against_ours)})",
-                          "another model" if solver in MUJOCO else f"{text.number(price.residual_m_per_s)} ({price.status_in_words()})")]
+                          "another model" if solver in MUJOCO else
+                          f"{text.number(price.residual_m_per_s)} ({price.status_in_words()})")]
     return [f"`{solver}`", *cells, growth(of_piles[0], of_piles[-1])]
 
 
@@ -145,11 +149,12 @@ def sentences(found):
     for solver, asked in ASKED.items() if ASKED_ROCKS in found else ():
         price = found[ASKED_ROCKS][solver]
         yield (f"`{solver}` takes {price.said(price.against_ours)} times as long as `{OURS}` on {ASKED_ROCKS} rocks and solves "
-               f"{price.statuses['ok']} of {price.statuses.total()} steps exactly; asked: at least {asked} times: {verdict(price, asked)}.")
+               f"{price.statuses['ok']} of {price.statuses.total()} steps exactly; asked: at least {asked} times: "
+               f"{verdict(price, asked)}.")
     if ASKED_ROCKS in found:
         constraint, step = (text.number(found[ASKED_ROCKS][solver].against_ours) for solver in MUJOCO)
-        yield (f"MuJoCo's constraints take {constraint} times as long as `{OURS}` on {ASKED_ROCKS} rocks, its whole step {step} times; it solves "
-               "another model, so nothing is asked of it.")
+        yield (f"MuJoCo's constraints take {constraint} times as long as `{OURS}` on {ASKED_ROCKS} rocks, its whole step "
+               f"{step} times; it solves another model, so nothing is asked of it.")
 
 
 def markdown(rows):

@@ -55,8 +55,8 @@ def _check_complete(stage, directory):
     missing += [pattern for pattern, _ in stage.files if not any(directory.glob(pattern))]
     if missing:
         more = f" and lacks {len(missing) - MOST_TOLD} files more" if len(missing) > MOST_TOLD else ""
-        raise ResultError(f"stage {stage.name}: {directory} has no {' and no '.join(missing[:MOST_TOLD])}{more}; nothing is stored. Take its "
-                          "line out of out/reference/stages.jsonl and give the command again")
+        raise ResultError(f"stage {stage.name}: {directory} has no {' and no '.join(missing[:MOST_TOLD])}{more}; nothing is "
+                          "stored. Take its line out of out/reference/stages.jsonl and give the command again")
 
 
 def _remove_others(results, written):

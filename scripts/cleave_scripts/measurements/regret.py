@@ -2,9 +2,9 @@
 
 The time of a cell in a scene is the mean over its steps of the medians of t_pr_ms + t_s_ms over rounds. The best cell is the
 one of least time in the odd rounds; what it is compared by are the even rounds, which it was not chosen by. Where auto chooses
-the kernel too, its grid are the cells of all kernels, and the baseline is the best of theirs. Those were timed in several replays of a
-round, of which one may be slower than another throughout: every replay has the cell WHOLE, and times are divided by that of WHOLE in the
-same replay, round and step, and multiplied by its median over replays and rounds.
+the kernel too, its grid are the cells of all kernels, and the baseline is the best of theirs. Those were timed in several
+replays of a round, of which one may be slower than another throughout: every replay has the cell WHOLE, and times are divided
+by that of WHOLE in the same replay, round and step, and multiplied by its median over replays and rounds.
 """
 import dataclasses
 import statistics
@@ -46,7 +46,8 @@ def _times(rows, name, paces=None):
         of_cell = lists.setdefault(name(row), ({}, {}))
         pace = paces[place(row)] if paces else 1
         of_cell[int(row["round"]) % 2].setdefault(row["step"], []).append(total_ms(row) / pace)
-    return {cell: [statistics.fmean(map(statistics.median, steps.values())) for steps in of_cell] for cell, of_cell in lists.items()}
+    return {cell: [statistics.fmean(map(statistics.median, steps.values())) for steps in of_cell]
+            for cell, of_cell in lists.items()}
 
 
 def _cell_and_kernel(row):

@@ -1,5 +1,5 @@
-"""What scripts/running_simulation measured: steps of a scene by the exact solver, with and without a session, in sweeps of projected
-Gauss-Seidel over the rows of the same steps."""
+"""What scripts/running_simulation measured: steps of a scene by the exact solver, with and without a session, in sweeps of
+projected Gauss-Seidel over the rows of the same steps."""
 import dataclasses
 import statistics
 
@@ -20,8 +20,8 @@ WAYS = {0: "anew", 1: "session"}  # the column session
 SWEEPS = 300  # of a solve by Gauss-Seidel, so that its preparation is little beside them
 SOLVER, SWEEPER = "exact", f"pgs@sweeps={SWEEPS}"
 REFERENCE_NS = 23  # a row and sweep on the machine that sweeps were first counted on
-COLUMNS = ("scene", "bodies", "step", "session", "round", "rows", "factorizations", "factor_reuses", "cg_iterations", "t_s_ms", "sweep_ms",
-           "status")
+COLUMNS = ("scene", "bodies", "step", "session", "round", "rows", "factorizations", "factor_reuses", "cg_iterations", "t_s_ms",
+           "sweep_ms", "status")
 COUNTED = ("factorizations", "factor_reuses", "cg_iterations")
 
 
@@ -71,7 +71,8 @@ def _cost(rows):
     firsts = [of_step[0] for of_step in by_step.values()]
     return Cost(steps=len(firsts), rows=statistics.fmean(int(row["rows"]) for row in firsts), t_s_ms=statistics.fmean(t_s_ms),
                 sweep_ms=statistics.fmean(sweep_ms), most_sweeps=max(time / sweep for time, sweep in zip(t_s_ms, sweep_ms)),
-                sums={name: sum(int(row[name]) for row in firsts) for name in COUNTED}, above=sum(row["status"] != "ok" for row in rows))
+                sums={name: sum(int(row[name]) for row in firsts) for name in COUNTED},
+                above=sum(row["status"] != "ok" for row in rows))
 
 
 def costs(rows):
@@ -82,14 +83,15 @@ def costs(rows):
     return {key: _cost(of_key) for key, of_key in found.items()}
 
 
-HEADER = ("", "solved", "rows", "t_s, ms", "a sweep, ns a row", "t_s in sweeps", f"in sweeps of {REFERENCE_NS} ns a row", "most sweeps of a step",
-          "factorisations", "factors carried", "conjugate gradient iterations", "solves above the limit")
+HEADER = ("", "solved", "rows", "t_s, ms", "a sweep, ns a row", "t_s in sweeps", f"in sweeps of {REFERENCE_NS} ns a row",
+          "most sweeps of a step", "factorisations", "factors carried", "conjugate gradient iterations",
+          "solves above the limit")
 
 
 def _line(scene, session, cost):
     times = (cost.t_s_ms, cost.sweep_ns, cost.sweeps, cost.reference_sweeps, cost.most_sweeps)
-    return [f"{scene.replace('_', ' ')}, last {counted(cost.steps, 'step')}", WAYS[session], f"{cost.rows:.0f}", *map(text.number, times),
-            *(cost.sums[name] for name in COUNTED), cost.above]
+    return [f"{scene.replace('_', ' ')}, last {counted(cost.steps, 'step')}", WAYS[session], f"{cost.rows:.0f}",
+            *map(text.number, times), *(cost.sums[name] for name in COUNTED), cost.above]
 
 
 def markdown(rows):

@@ -20,9 +20,9 @@ MEDIANS = ("t_s_ms", "t_s_waiting_ms", "core_round_trip_ns")  # over the process
 
 
 def solve(program, scratch, files, repeats, way, *options, all_ok=True):
-    """A row a counted cell, of cells that failed too unless all have to be ok. The first of the files is replayed once more before all of them and once more after, which is
-    not counted: so every process is solving for as long as another is at cells that count. Where that did not hold, all
-    is solved again."""
+    """A row a counted cell, of cells that failed too unless all have to be ok. The first of the files is replayed once more
+    before all of them and once more after, which is not counted: so every process is solving for as long as another is at cells
+    that count. Where that did not hold, all is solved again."""
     directories = [scratch / f"replay{number}" for number in range(way.processes)]
     before, after = (_in_another_folder(files[0], scratch / name) for name in ("before", "after"))
     for _ in range(ATTEMPTS):

@@ -83,8 +83,8 @@ def _share(key, rows):
         times.setdefault(("2", "1"), math.nan)
     if not all(way in times for way in ways):
         raise ResultError(f"two threads: {' '.join(key)} is not there with {', '.join(way.name for way in WAYS)}")
-    return Share(scene, int(bodies), float(cfm), int(step), solver, f"{partitioner}+{refiner}", *(times[way] for way in ways), far,
-                 rounds)
+    return Share(scene, int(bodies), float(cfm), int(step), solver, f"{partitioner}+{refiner}",
+                 *(times[way] for way in ways), far, rounds)
 
 
 def of_scene(found, scene):
@@ -151,7 +151,8 @@ def _cells(share):
 
 
 def lines_of_shares(found):
-    """A table of the rock piles, one of Large Rock Pile, where the least of the combinations is shown, and one of solvers that iterate there."""
+    """A table of the rock piles, one of Large Rock Pile, where the least of the combinations is shown,
+    and one of solvers that iterate there."""
     times = ("one thread, ms", "ratio", "ceiling")
     piles = [[share.bodies, f"{share.cfm:g}", share.solver, *_cells(share)] for share in of_scene(found, "rock_pile")]
     direct, sweeps = large_rock_pile(found)
@@ -171,7 +172,8 @@ def by_load(rows):
 
 
 def sleeping_over_awake(rows):
-    """{scene: t_s with threads that go to sleep over t_s with threads that never do}, medians over the rounds of scripts/idle_cost"""
+    """{scene: t_s with threads that go to sleep over t_s with threads that never do},
+    medians over the rounds of scripts/idle_cost"""
     ratios = {}
     for row in rows:
         ratios.setdefault(row["scene"], []).append(float(row["t_s_ms"]) / float(row["awake_t_s_ms"]))

@@ -74,10 +74,12 @@ def _body(pile, body):
 
 
 def model_of(pile, cone):
-    """MJCF, with everything but the cone, of CONES, as MuJoCo ships it: Newton's method, and sparse matrices where there is much."""
+    """MJCF, with everything but the cone, of CONES, as MuJoCo ships it: Newton's method,
+    and sparse matrices where there is much."""
     return MODEL.format(
         cone=cone,
-        step=f"{pile['step']:.17g}", rows=most_rows(pile), stack=STACK, mu=f"{pile['friction_coefficient'].max(initial=0):.17g}",
+        step=f"{pile['step']:.17g}", rows=most_rows(pile), stack=STACK,
+        mu=f"{pile['friction_coefficient'].max(initial=0):.17g}",
         static="\n".join(_geom(kind, *rest) for of, kind, *rest in pile["geoms"] if of < 0),
         bodies="\n".join(_body(pile, body) for body in range(len(pile["position"]))))
 

@@ -46,7 +46,8 @@ def index_rows(directory):
 
 def _cell(directory, row, in_rounds):
     name = (row["cell"] if row["label"] == "-" else row["label"]) + f"_round_{row['round']}" * in_rounds
-    return Cell(name, directory / CELLS_FOLDER / row["cell"], row["status"], row["reason"], row["log"] == "-", options_of(row["arguments"]))
+    return Cell(name, directory / CELLS_FOLDER / row["cell"], row["status"], row["reason"], row["log"] == "-",
+                options_of(row["arguments"]))
 
 
 def options_of(arguments):
@@ -60,8 +61,9 @@ def refuse(error):
 
 
 def run_files_below(directory, file_name, tell=refuse):
-    """(name, path) of a file of every output directory, in the order of the names: its path below the directory, or that of its campaign and
-    what the campaign calls it. Cells that a campaign has no more are left out. tell(error): of a campaign that cannot be read."""
+    """(name, path) of a file of every output directory, in the order of the names: its path below the directory, or that of its
+    campaign and what the campaign calls it. Cells that a campaign has no more are left out. tell(error): of a campaign that
+    cannot be read."""
     directory, found, campaigns = pathlib.Path(directory), [], set()
     for path in directory.rglob(file_name):
         campaign = _campaign_of(path, directory)

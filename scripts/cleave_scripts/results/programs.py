@@ -83,7 +83,8 @@ def run_side_by_side(commands, allowed=(0,), **options):
         for process, said in running:
             if process.wait() not in allowed:
                 said.seek(0)
-                raise ResultError(f"{' '.join(process.args[:2])} stopped with exit code {process.returncode}: {last_line(said.read())}")
+                raise ResultError(f"{' '.join(process.args[:2])} stopped with exit code {process.returncode}: "
+                                  f"{last_line(said.read())}")
 
 
 @contextlib.contextmanager
@@ -117,7 +118,8 @@ def run_and_watch(command, **options):
 
 
 def record(program, directory, scene, at, *options, all_ok=True):
-    """Problem files of the steps `at`, in their order; unless all have to be ok, also where steps were moved by what is not exact."""
+    """Problem files of the steps `at`, in their order; unless all have to be ok,
+    also where steps were moved by what is not exact."""
     run([program, "record", "--scene", scene, "--at", ",".join(map(str, at)), *options, "--out", directory, "--force"],
         allowed=(0,) if all_ok else (0, 2))
     return [directory / f"{scene}_step{step:06}.h5" for step in at]
@@ -154,8 +156,8 @@ def git(root, *arguments):
 
 
 def load_benchmark(path, program=None):
-    """The rows that Google Benchmark has written, less what it makes of the repetitions itself (mean, median, spread). What a benchmark of
-    another build than `program` has written is refused."""
+    """The rows that Google Benchmark has written, less what it makes of the repetitions itself (mean, median, spread). What a
+    benchmark of another build than `program` has written is refused."""
     try:
         told = json.loads(path.read_text(encoding="utf-8"))
         rows, context = [row for row in told["benchmarks"] if row.get("run_type") != "aggregate"], dict(told.get("context", {}))
@@ -172,4 +174,5 @@ def _refuse_other_build(context, program):
     mine, its = ([of.get(name, "unknown") for name in ("git_hash", "git_dirty")] for of in (key, context))
     if mine != its:
         builds = " and ".join(f"{commit[:10]} (local changes: {dirty})" for commit, dirty in (its, mine))
-        raise ResultError(f"{context.get('executable', 'the benchmark')} and {program} are builds of commits {builds}; build both anew")
+        raise ResultError(f"{context.get('executable', 'the benchmark')} and {program} are builds of commits {builds}; "
+                          "build both anew")

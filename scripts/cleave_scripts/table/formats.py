@@ -49,9 +49,9 @@ def _name_widths(cells):
 
 def _text_row(cell, partitioner_width, refiner_width):
     ratios = "".join(f"{format_ratio(ratio):>8}" for ratio in cell.ours / cell.paper)
-    return (f"{cell.partitioner:<{partitioner_width}}{cell.refiner:<{refiner_width}}|" + _text_times(cell.ours, cell.ours_lowest, 3) +
-            _text_times(cell.paper, cell.paper_lowest, 1) + f"{ratios}  |" + ("!" if cell.remark else "") +
-            _waited(cell))
+    return (f"{cell.partitioner:<{partitioner_width}}{cell.refiner:<{refiner_width}}|" +
+            _text_times(cell.ours, cell.ours_lowest, 3) + _text_times(cell.paper, cell.paper_lowest, 1) + f"{ratios}  |" +
+            ("!" if cell.remark else "") + _waited(cell))
 
 
 def _waited(cell):

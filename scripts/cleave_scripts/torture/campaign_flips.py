@@ -1,5 +1,5 @@
-"""A byte or bit changed in any file of a campaign, its index and merged tables among them: `verify` has to find it and to name the
-file."""
+"""A byte or bit changed in any file of a campaign, its index and merged tables among them:
+`verify` has to find it and to name the file."""
 import shutil
 
 from cleave_scripts.torture.directories import final_files
@@ -12,7 +12,8 @@ def trial(trial):
     shutil.copytree(trial.material.mixed_campaign, directory)
     kinds = {}
     for path in final_files(directory):
-        kinds.setdefault((path.name if path.parent.name != "failed" else "log", path.relative_to(directory).parts[0]), []).append(path)
+        kinds.setdefault((path.name if path.parent.name != "failed" else "log", path.relative_to(directory).parts[0]),
+                         []).append(path)
     path = trial.random.choice(kinds[trial.random.choice(sorted(kinds))])
     flip(trial, path)
     ending = trial.finish(trial.start("verify", "out"))

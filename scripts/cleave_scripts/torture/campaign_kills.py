@@ -1,4 +1,5 @@
-"""SIGKILL of a whole campaign at random moments, one in five of them on a disk that is too small: the same command completes it."""
+"""SIGKILL of a whole campaign at random moments, one in five of them on a disk that is too small:
+the same command completes it."""
 import signal
 
 from cleave_scripts.torture import child, full_disk

@@ -201,7 +201,8 @@ def _control_text(file, dice):
 
 
 def _wrong_schema(file, dice):
-    file.attrs["schema"] = dice.choice(["cleave-problem-2", "cleave-problem-3", "", "cleave-problem-1\n", "cleave-problem-11", "CLEAVE"])
+    file.attrs["schema"] = dice.choice(["cleave-problem-2", "cleave-problem-3", "", "cleave-problem-1\n",
+                                        "cleave-problem-11", "CLEAVE"])
 
 
 def _wrong_attribute(file, dice):

@@ -3,13 +3,13 @@ import re
 import signal
 
 DONE, BAD_INPUT, ROWS_FAILED, CHECK_FAILED, INTERRUPTED = 0, 1, 2, 3, 130
-# What verify says of a good file, before a bad one, what a command says that takes over the lock of a killed one, and of options
-# that are not needed.
+# What verify says of a good file, before a bad one, what a command says that takes over the lock of a killed one, and of
+# options that are not needed.
 INFORMATION = re.compile(r": problem of .*, hash [0-9a-f]{16}$|: left by process \d+ .*; taken over$|^--.* changes? nothing: |"
                          r"^--\w+ all leaves out ")
 PROGRESS = re.compile(r"^\w+: step \d+ of \d+, \d+ s, about \d+ s to go$")  # of what had taken long
-# What libraries say whose start, before the program's own, lacks memory: GnuTLS, which HDF5 brings in and which goes on without;
-# and OpenMP's begins its one line with an empty one.
+# What libraries say whose start, before the program's own, lacks memory: GnuTLS, which HDF5 brings in and which goes on
+# without; and OpenMP's begins its one line with an empty one.
 LIBRARY_START = re.compile(r"^Error in GnuTLS initialization: .*\n|^\n(?=libgomp: )", re.MULTILINE)
 ALARMS = ("Traceback (most recent call last)", "AddressSanitizer", "ThreadSanitizer", "runtime error:", "terminate called",
           "Assertion", "HDF5-DIAG", "free(): invalid", "malloc():", "double free")

@@ -13,8 +13,8 @@ AGAIN_S = 1  # an interrupt is told again
 
 
 class Lanes:
-    """make(lane, tally, tell) makes the trials of a lane, counts them in its tally and calls tell(text) meanwhile, with "" where
-    only the counts are new."""
+    """make(lane, tally, tell) makes the trials of a lane, counts them in its tally and calls tell(text) meanwhile, with ""
+    where only the counts are new."""
 
     def __init__(self, count, make):
         self.make, self.tallies, self.pipes, self.interrupted = make, [Tally() for _ in range(count)], {}, False
@@ -64,8 +64,8 @@ class Lanes:
         tell(text, Tally.of_all(self.tallies))
 
     def _run(self, lane, pipe):
-        """A terminal interrupts all its processes; lanes are told by SIGTERM, of which the first counts. Programs under trial must
-        not inherit a signal that is ignored, so it is caught."""
+        """A terminal interrupts all its processes; lanes are told by SIGTERM, of which the first counts. Programs under trial
+        must not inherit a signal that is ignored, so it is caught."""
         signal.signal(signal.SIGINT, lambda *_: None)
         signal.signal(signal.SIGTERM, self._end)
         tally = Tally()

@@ -2,8 +2,8 @@
 number has to be off."""
 
 OPTIONS = ("run_id partitioner refiner solver threads repeat_count gravity_m_per_s2 match_tolerance contact_cap "
-           "skip_small_islands cold session repartition body_order mode advance steps scene_options schema_version problem_file scene seed step time_s "
-           "friction dt_s cfm erp").split()
+           "skip_small_islands cold session repartition body_order mode advance steps scene_options schema_version "
+           "problem_file scene seed step time_s friction dt_s cfm erp").split()
 PARAMETERS = ("max_bodies tau_mr tau_mix max_growth edge_weight degree degree_scope as_printed sweeps predictor_sweeps "
               "max_iterations reuse_analysis quickstep_iterations ode_step_max_rows ode_friction mu "
               "friction_force_n").split()

@@ -2,8 +2,8 @@
 import dataclasses
 import typing
 
-from cleave_scripts.torture import (campaign_flips, campaign_kills, command_lines, edits, flips, full_disk, interrupts, kills, low_memory,
-                                    problem_files, problem_flips, random_runs, streams, two_processes)
+from cleave_scripts.torture import (campaign_flips, campaign_kills, command_lines, edits, flips, full_disk, interrupts, kills,
+                                    low_memory, problem_files, problem_flips, random_runs, streams, two_processes)
 
 
 @dataclasses.dataclass(frozen=True)

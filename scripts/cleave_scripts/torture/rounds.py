@@ -10,8 +10,8 @@ from cleave_scripts.torture.trial import Trial
 
 
 class Rounds:
-    """Kinds take turns so that each has its share of the time. program, material and patience are what trials work with; lane is
-    which of the lanes side by side: trials of a kind are dealt to them by turns."""
+    """Kinds take turns so that each has its share of the time. program, material and patience are what trials work with; lane
+    is which of the lanes side by side: trials of a kind are dealt to them by turns."""
 
     def __init__(self, program, kinds, options, keeper, lane, tally, tell):
         self.program, self.patience = program, options.patience

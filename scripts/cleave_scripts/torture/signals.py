@@ -1,5 +1,5 @@
-"""Signals that end trials wait while a process is made: Python drops what a handler raises in its hooks at a fork, and a child that
-nobody has noted yet would be left running."""
+"""Signals that end trials wait while a process is made: Python drops what a handler raises in its hooks at a fork, and a child
+that nobody has noted yet would be left running."""
 import contextlib
 import signal
 
