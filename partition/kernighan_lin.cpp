@@ -9,9 +9,8 @@
 // the lowest max(i, j); gains are recomputed after each swap; it ends when none is positive. Sizes of parts
 // do not change.
 //
-// For every pair of parts the bodies of either side are kept by falling D, so that the search for the best
-// swap of a pair stops as soon as D_i + D_j cannot beat the best found. It is repeated only for pairs whose
-// sides changed; a heap holds the best swap of every pair.
+// For every pair of parts the bodies of either side are kept in the order of the search (swap_search.h). It
+// is repeated only for pairs whose sides changed; a heap holds the best swap of every pair.
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -19,6 +18,7 @@
 
 #include "partition/gains.h"
 #include "partition/refiner.h"
+#include "partition/swap_search.h"
 
 namespace cleave {
 namespace {
@@ -28,25 +28,16 @@ class Side {
  public:
   Side() { candidates_.reserve(8); }  // few sides are longer: one allocation instead of four
 
-  struct Candidate {
-    int gain;  // D
-    int body;
-    bool operator==(const Candidate&) const = default;
-    bool operator<(const Candidate& other) const {
-      return gain != other.gain ? gain > other.gain : body < other.body;
-    }
-  };
-
-  void insert(const Candidate& candidate) {
+  void insert(const SwapCandidate& candidate) {
     candidates_.insert(std::lower_bound(candidates_.begin(), candidates_.end(), candidate), candidate);
   }
-  void erase(const Candidate& candidate) {
+  void erase(const SwapCandidate& candidate) {
     candidates_.erase(std::lower_bound(candidates_.begin(), candidates_.end(), candidate));
   }
-  const std::vector<Candidate>& candidates() const { return candidates_; }
+  const std::vector<SwapCandidate>& candidates() const { return candidates_; }
 
  private:
-  std::vector<Candidate> candidates_;
+  std::vector<SwapCandidate> candidates_;
 };
 
 struct PartPair {
@@ -83,12 +74,12 @@ class SwapSearch {
   // b, bodies of other parts changed only towards a and b; the other sides are left alone then (a, b = -1:
   // take all).
   void enter(int body, int a, int b) {
-    visit_sides(body, a, b, [](Side& side, Side::Candidate candidate) { side.insert(candidate); });
+    visit_sides(body, a, b, [](Side& side, SwapCandidate candidate) { side.insert(candidate); });
   }
 
   // Undoes enter; must be called before a part id or gain of the body changes.
   void leave(int body, int a, int b) {
-    visit_sides(body, a, b, [](Side& side, Side::Candidate candidate) { side.erase(candidate); });
+    visit_sides(body, a, b, [](Side& side, SwapCandidate candidate) { side.erase(candidate); });
   }
 
   template <class Visit>
@@ -141,32 +132,12 @@ class SwapSearch {
     for (int id : changed_) {
       PartPair& pair = pairs_[id];
       pair.changed = false;
-      pair.best = best_swap(pair.side[0].candidates(), pair.side[1].candidates());
+      const auto found = best_swap(graph_, unit_, pair.side[0].candidates(), pair.side[1].candidates(), 1);
+      pair.best = found.value_or(Exchange{});
       pair.best.tag = id;
-      if (pair.best.gain > 0) swaps_.push(pair.best);
+      if (found) swaps_.push(pair.best);
     }
     changed_.clear();
-  }
-
-  // Gain 0 when no swap has a positive one.
-  Exchange best_swap(const std::vector<Side::Candidate>& ours,
-                     const std::vector<Side::Candidate>& theirs) const {
-    Exchange best;
-    if (theirs.empty()) return best;
-    for (const Side::Candidate& i : ours) {
-      if (i.gain + theirs.front().gain < std::max(best.gain, 1)) break;
-      for (const Side::Candidate& j : theirs) {
-        const int at_most = i.gain + j.gain;
-        if (at_most < std::max(best.gain, 1)) break;
-        const int shared = edge_weight(graph_, i.body, j.body, unit_);
-        const Exchange swap{at_most - 2 * shared, std::min(i.body, j.body), std::max(i.body, j.body), 0};
-        if (swap.gain > 0 && best < swap) best = swap;
-        // The rest of the side has no greater D, and a higher index where D is equal: it loses against this
-        // j.
-        if (shared == 0) break;
-      }
-    }
-    return best;
   }
 
   const BodyGraph& graph_;

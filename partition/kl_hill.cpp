@@ -11,6 +11,7 @@
 // first moment of least cut, and repeated while it lowers the cut. Rounds over all pairs follow until one
 // brings nothing. Sizes of parts do not change, and the result is never worse than the start.
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <set>
 #include <utility>
@@ -19,6 +20,7 @@
 #include "partition/gains.h"
 #include "partition/parameters.h"
 #include "partition/refiner.h"
+#include "partition/swap_search.h"
 
 namespace cleave {
 namespace {
@@ -43,18 +45,20 @@ class PairPasses {
 
  private:
   long pass(int a, int b, RefineSummary& summary) {
-    std::vector<int> ours = bodies_[a], theirs = bodies_[b];
-    for (const std::vector<int>* side : {&ours, &theirs})
-      for (const int body : *side) gain_[body] = gain_of(body, a, b);
+    for (const int part : {a, b})
+      for (const int body : bodies_[part]) gain_[body] = gain_of(body, a, b);
+    std::vector<SwapCandidate> ours = candidates(a), theirs = candidates(b);
     std::vector<std::pair<int, int>> swaps;
     std::size_t kept = 0;
     long total = 0, best = 0;
     while (!ours.empty() && !theirs.empty()) {
-      const Exchange swap = best_swap(ours, theirs);
+      order(ours);
+      order(theirs);
+      const Exchange swap = *best_swap(graph_, unit_, ours, theirs, std::numeric_limits<int>::min());
       const auto [i, j] = part_of_body_[swap.first] == a ? std::pair(swap.first, swap.second)
                                                          : std::pair(swap.second, swap.first);
-      std::erase(ours, i);
-      std::erase(theirs, j);
+      std::erase_if(ours, [i](const SwapCandidate& candidate) { return candidate.body == i; });
+      std::erase_if(theirs, [j](const SwapCandidate& candidate) { return candidate.body == j; });
       move(i, a, b);
       move(j, b, a);
       swaps.emplace_back(i, j);
@@ -98,26 +102,16 @@ class PairPasses {
     }
   }
 
-  // By falling D, so that a search ends once the sum of two cannot beat the best.
-  Exchange best_swap(std::vector<int>& ours, std::vector<int>& theirs) {
-    const auto by_gain = [this](int i, int j) { return gain_[i] != gain_[j] ? gain_[i] > gain_[j] : i < j; };
-    std::ranges::sort(ours, by_gain);
-    std::ranges::sort(theirs, by_gain);
-    Exchange best;
-    bool any = false;
-    for (const int i : ours) {
-      if (any && gain_[i] + gain_[theirs.front()] < best.gain) break;
-      for (const int j : theirs) {
-        if (any && gain_[i] + gain_[j] < best.gain) break;
-        const int shared = edge_weight(graph_, i, j, unit_);
-        const Exchange swap{gain_[i] + gain_[j] - 2 * shared, std::min(i, j), std::max(i, j), 0};
-        if (!any || best < swap) best = swap;
-        any = true;
-        // The rest have no greater D, and a higher index where it is equal: they lose against this one.
-        if (shared == 0) break;
-      }
-    }
-    return best;
+  std::vector<SwapCandidate> candidates(int part) const {
+    std::vector<SwapCandidate> side;
+    for (const int body : bodies_[part]) side.push_back({0, body});
+    return side;
+  }
+
+  // With their present D.
+  void order(std::vector<SwapCandidate>& side) const {
+    for (SwapCandidate& candidate : side) candidate.gain = gain_[candidate.body];
+    std::sort(side.begin(), side.end());
   }
 
   const BodyGraph& graph_;

@@ -25,6 +25,7 @@ std::string key_text(const RunOptions& options) {
   json.field("threads", options.threads);
   json.field("git_hash", build.git_hash);
   json.field("git_dirty", build.git_dirty);
+  json.field("compiler", build.compiler);
   json.field("flags", build.flags);
   json.field("build_type", build.build_type);
   json.field("cpu_model", machine.cpu_model);

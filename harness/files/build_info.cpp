@@ -127,7 +127,8 @@ BuildInfo build_info() {
 
 std::string build_key(const BuildInfo& build) {
   Fnv1a64 hash;
-  for (const std::string& part : {build.git_hash, build.git_dirty, build.flags, build.build_type})
+  for (const std::string& part :
+       {build.git_hash, build.git_dirty, build.compiler, build.flags, build.build_type})
     hash.add(part + "\n");
   if (build.git_dirty != "false") hash.add(build.build_id);
   return hex(hash.value());

@@ -22,8 +22,8 @@ struct BuildInfo {
 };
 BuildInfo build_info();
 
-// Fingerprint of what decides what a program computes: commit, flags and build type of clean sources, which
-// any machine can make again; of sources with local changes the program itself.
+// Fingerprint of what decides what a program computes: commit, compiler, flags and build type of clean
+// sources, which any machine can make again; of sources with local changes the program itself.
 std::string build_key(const BuildInfo& build);
 
 // "cleave 0.2.0 (commit 0123..., clean) GCC 12.2.0"; "dirty" where the sources differ from the commit.

@@ -1,9 +1,10 @@
 #include "harness/world/extract_shapes.h"
 
 #include <array>
-#include <cmath>
 #include <stdexcept>
 #include <string>
+
+#include "scenarios/shapes.h"
 
 namespace cleave {
 namespace {
@@ -57,21 +58,13 @@ std::array<double, 3> size_of(dGeomID geom, GeomType type) {
   return {edges[0], edges[1], edges[2]};
 }
 
-// Half of the turn from z to a unit vector, as a quaternion; opposite to z any axis across will do.
-std::array<double, 4> turn_from_z(const dVector4 normal) {
-  const double twice = 2 * (1 + normal[2]);
-  if (twice < 1e-12) return {0, 1, 0, 0};
-  const double norm = std::sqrt(twice);
-  return {norm / 2, -normal[1] / norm, normal[0] / norm, 0};
-}
-
 // Planes are the one kind of geom that ODE gives no position.
 void place(dGeomID geom, Geom& out) {
   if (out.type == GeomType::plane) {
     dVector4 plane;
     dGeomPlaneGetParams(geom, plane);
     for (int k = 0; k < 3; ++k) out.position[k] = plane[3] * plane[k];
-    out.orientation = turn_from_z(plane);
+    out.orientation = orientation_along({plane[0], plane[1], plane[2]});
     return;
   }
   const dReal* position = dGeomGetPosition(geom);

@@ -18,7 +18,7 @@
 #include "harness/files/problem_file.h"
 #include "solver/direct_solver.h"
 #include "solver/residual.h"
-#include "solver/strategies/interior_constants_list.h"
+#include "tests/solver/interior_constants_list.h"
 
 namespace cleave {
 namespace {

@@ -40,7 +40,8 @@ TEST(RunKey, IsWhatTheManifestHoldsAndRunsNothing) {
                            key, directory / "run/manifest.json"});
   EXPECT_EQ(
       same.out,
-      "True ['build_type', 'cores', 'cpu_model', 'flags', 'git_dirty', 'git_hash', 'run_id', 'threads']\n")
+      "True ['build_type', 'compiler', 'cores', 'cpu_model', 'flags', 'git_dirty', 'git_hash', 'run_id', "
+      "'threads']\n")
       << same.err << key;
 }
 

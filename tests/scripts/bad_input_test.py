@@ -22,8 +22,8 @@ case "$*" in
           exit 1 ;;
   *"--solver nope"*) echo "cleave run: --solver: 'nope' is unknown" >&2; exit 1 ;;
   *nope*) echo "cleave run: --partitioner: 'nope' is unknown" >&2; exit 1 ;;
-  *--print-key*) echo '{"run_id": "1", "threads": 1, "git_hash": "f", "git_dirty": "false", "flags": "-march=x86-64-v3",
-    "build_type": "RelWithDebInfo", "cpu_model": "C", "cores": 2}'; exit 0 ;;
+  *--print-key*) echo '{"run_id": "1", "threads": 1, "git_hash": "f", "git_dirty": "false", "compiler": "GCC",
+    "flags": "-march=x86-64-v3", "build_type": "RelWithDebInfo", "cpu_model": "C", "cores": 2}'; exit 0 ;;
 esac
 touch ran
 exit 1

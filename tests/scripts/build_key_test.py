@@ -9,7 +9,8 @@ import synthetic  # noqa: F401  (finds the modules of scripts/)
 from cleave_scripts.results.build_key import build_key, difference
 from cleave_scripts.results.errors import ResultError
 
-KEY = {"git_hash": "a" * 40, "git_dirty": "false", "flags": "-O3", "build_type": "Release", "cpu_model": "C", "cores": 2}
+KEY = {"git_hash": "a" * 40, "git_dirty": "false", "compiler": "G 1", "flags": "-O3", "build_type": "Release",
+       "cpu_model": "C", "cores": 2}
 
 
 class DifferenceTest(unittest.TestCase):
@@ -17,6 +18,7 @@ class DifferenceTest(unittest.TestCase):
     def test_equal_keys_are_kept_and_every_part_of_the_key_counts(self):
         self.assertIsNone(difference(KEY, KEY))
         for name, value, words in (("git_hash", "b" * 40, "commit aaaaaaaaaa"),
+                                   ("compiler", "G 2", "built otherwise: compiler G 1, here G 2"),
                                    ("flags", "-O2", "built otherwise: flags -O3, here -O2"),
                                    ("build_type", "Debug", "built otherwise: build_type Release, here Debug"),
                                    ("cpu_model", "D", "another machine: cpu_model C, here D"),

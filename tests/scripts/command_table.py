@@ -105,6 +105,7 @@ COMMANDS = {
     "test": Command({"--preset": "preset"}, passes_on=True),
     "friction_cost": Command({"--rocks": "rock piles", "--cfm": "decades", "--scene": "piles", "--steps": "count",
                               "--measure-every": "count", "--rounds": "count", **MEASURED}, runs=True),
+    "friction_forms": Command(MEASURED, runs=True),
     "friction_models": Command({"--scene": "scenes", "--tables": "tables of friction", "--steps": "count", **MEASURED},
                                runs=True),
     "hidden_choices": Command({"--spec": "input file", "--report": "output directory", **MEASURED}, runs=True),

@@ -13,7 +13,8 @@ from synthetic import SCRIPTS
 
 from cleave_scripts.results.kept import Journal
 
-KEY = {"git_hash": "a" * 40, "git_dirty": "false", "flags": "-O3", "build_type": "Release", "cpu_model": "C", "cores": 2}
+KEY = {"git_hash": "a" * 40, "git_dirty": "false", "compiler": "G 1", "flags": "-O3", "build_type": "Release",
+       "cpu_model": "C", "cores": 2}
 Step = collections.namedtuple("Step", "label arguments")
 ONE, TWO = Step("one", ("run", "1")), Step("two", ("run", "2"))
 

@@ -311,14 +311,15 @@ class KargerTest(Measurement):
     def test_every_scene_meets_every_number_of_trials(self):
         self.run_it()
         calls = self.calls()
-        self.assertEqual(len(calls), 4 * 2)
-        self.assertIn("karger@trials=10000", calls[-1])
-        self.assertEqual(len(self.rows("karger.csv")), 4 * 4 * 7 * 2)
+        self.assertEqual(len(calls), 7 * 2)
+        self.assertIn("--scene crane --at 100,200,300,400 --dt 0.001 --cfm 1e-10", calls[-4])
+        self.assertIn("karger@trials=10000,karger@karger-method=recursive-bisection@trials=1 ", calls[-1])
+        self.assertEqual(len(self.rows("karger.csv")), 7 * 4 * 8 * 2)
 
     def test_cells_that_are_not_solved_are_refused(self):
         with unittest.mock.patch.dict(os.environ, STAND_IN_STATUS="not_converged"):
             said = self.run_it(code=1).stderr.splitlines()
-        self.assertIn("56 of 56 replayed cells are not ok", said[-1])
+        self.assertIn("64 of 64 replayed cells are not ok", said[-1])
         self.assertFalse((self.directory / "out").exists())
 
 
@@ -328,7 +329,7 @@ class PartitionOverTimeTest(Measurement):
     def test_every_scene_meets_every_rule(self):
         self.run_it("--steps", 5)
         calls = self.calls()
-        self.assertEqual(len(calls), 4 * 2 * 6)
+        self.assertEqual(len(calls), 7 * 2 * 6)
         self.assertIn("--repartition drift:0.2", calls[-1])
         self.assertEqual(len(self.rows("partition_over_time.csv")), len(calls) * 4)  # the first step has no constraint
 
@@ -376,10 +377,10 @@ class PartitionRegretTest(Measurement):
 
     def test_every_round_replays_every_cell_with_the_kernel_that_is_modelled(self):
         said = self.run_it("--rounds", 2, "--threads", 2).stdout
-        self.assertEqual(said.count("pass"), 4 * 4, said)
+        self.assertEqual(said.count("pass"), 7 * 4, said)
         calls = self.calls()
         replays = [call.split() for call in calls if call.startswith("replay ")]
-        self.assertEqual((len(calls), len(replays)), (4 * (1 + 2 * 4), 4 * 2 * 4))
+        self.assertEqual((len(calls), len(replays)), (7 * (1 + 2 * 4), 7 * 2 * 4))
         solvers = {kernel: f"pivot:{kernel},pivot:monolithic"
                    for kernel in ("schur-rows", "schur-bodies", "schur-nested")} | {"any": "pivot:chosen,pivot:monolithic"}
         for words in replays:
@@ -389,14 +390,14 @@ class PartitionRegretTest(Measurement):
         rows = self.rows("partition_regret.csv")
         # scenes, steps and rounds; kernels, refiners, partitioners and solvers, of which the stand-in splits for both;
         # chosen and monolithic
-        self.assertEqual(len(rows), 4 * 12 * 2 * (3 * 2 * (5 + 3 * 5 + 1) * 2 + 2))
+        self.assertEqual(len(rows), 7 * 12 * 2 * (3 * 2 * (5 + 3 * 5 + 1) * 2 + 2))
         self.assertEqual({row["replay"] for row in rows}, {"schur-rows", "schur-bodies", "schur-nested", "any"})
         self.assertEqual({row["round"] for row in rows}, {"1", "2"})
 
     def test_more_than_a_tenth_is_an_exit_code_and_said(self):
         for auto_ms, code in ((0.9, 3), (0.1, 0)):  # of 8.1
             with unittest.mock.patch.dict(os.environ, STAND_IN_AUTO_MS=str(auto_ms)):
-                self.assertEqual(self.run_it("--rounds", 2, code=code).stdout.count("FAIL"), 16 if code else 0)
+                self.assertEqual(self.run_it("--rounds", 2, code=code).stdout.count("FAIL"), 28 if code else 0)
 
     def test_bad_input_is_one_line(self):
         self.check_least("--rounds", 2)

@@ -10,8 +10,8 @@ from synthetic import ROOT, SCRIPTS, run_script, write_manifest
 from cleave_scripts.documents import (accuracy, campaigns, cuts, friction, hidden, large, markers, paper_claims, paper_table,
                                       peers, sets, speed, stability, worth)
 from cleave_scripts.documents.stored import NoResults, Stored
-from cleave_scripts.measurements import (coulomb_beside_siconos, extremes_steps, friction_bounds, friction_cost, large_scenes,
-                                         partition_worth, peer_times, running_simulation)
+from cleave_scripts.measurements import (coulomb_beside_siconos, extremes_steps, friction_bounds, friction_cost, friction_forms,
+                                         large_scenes, partition_worth, peer_times, running_simulation)
 from cleave_scripts.measurements.reference_stages import STAGES
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.table import text
@@ -69,7 +69,7 @@ class CheckoutTest(unittest.TestCase):
         """{small CSV file: its columns} as the commands write them."""
         written = {"extremes.csv": set(extremes_steps.WRITTEN), "running_simulation.csv": set(running_simulation.COLUMNS),
                    "large_scenes.csv": set(large_scenes.COLUMNS), "friction_cost.csv": set(friction_cost.COLUMNS),
-                   "friction_bounds.csv": set(friction_bounds.COLUMNS),
+                   "friction_bounds.csv": set(friction_bounds.COLUMNS), "friction_forms.csv": set(friction_forms.COLUMNS),
                    "coulomb_peers.csv": set(coulomb_beside_siconos.COLUMNS),
                    "partition_worth.csv": set(partition_worth.COLUMNS), "peer_times.csv": set(peer_times.COLUMNS)}
         for command in ("two_threads", "modelled_workers", "busy_machine", "idle_cost", "cold_starts", "karger",
@@ -305,7 +305,7 @@ class BlocksTest(unittest.TestCase):
     def test_karger(self):
         stored_data.karger(self.root)
         self.assertIn("| Rock Pile | 40 / 1.00 | 50 / 1.00 | 50 / 1.00 | 45 / 1.00 | 40 / 1.00 | 35 / 1.00 | 20 / 1.00 | "
-                      "10000 | 100 | 41.0 | 21.0 |", cuts.karger(self.stored))
+                      "90 / 1.00 | 10000 | 100 | 41.0 | 21.0 |", cuts.karger(self.stored))
 
     def test_over_time(self):
         stored_data.partition_over_time(self.root)

@@ -42,7 +42,7 @@ LEFT = {
     "modelled_workers": ["modelled_workers.csv"],
     "running_simulation": ["running_simulation.csv"], "large_scenes": ["large_scenes.csv"],
     "model_savings": ["model_savings.csv"], "campaign_costs": ["campaign_costs.csv"],
-    "friction_cost": ["friction_cost.csv"],
+    "friction_cost": ["friction_cost.csv"], "friction_forms": ["friction_forms.csv"],
     "friction_models": ["friction_motion.csv", "friction_velocities.csv", "friction_bounds.csv"],
     "coulomb_peers": ["coulomb_peers.csv"], "peers": ["peer_times.csv"],
     "hidden_choices": ["hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv", "verdict_map.png"],
@@ -133,11 +133,11 @@ class ReferenceTest(unittest.TestCase):
             "two_threads.csv", "karger.csv", "partition_over_time.csv", "partition_worth.csv", "partition_worth.png",
             "partition_regret.csv", "tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "price_of_accuracy.png",
             "time_to_accuracy.png", "crossover.png", "accuracy_profile.png", "tradeoff_motion.png", "model_savings.csv",
-            "campaign_costs.csv", "friction_cost.csv", "friction_motion.csv", "friction_velocities.csv", "friction_bounds.csv",
-            "coulomb_peers.csv", "peer_times.csv", "hidden_choices.csv", "hidden_choices_claims.csv", "hidden_choices_fit.csv",
-            "verdict_map.png", "modelled_workers.csv", "running_simulation.csv", "large_scenes.csv", "cold_starts.csv",
-            "ablation.csv", "ladder/ladder.csv", "ladder/ladder_full_exact.csv",
-            "report/verdicts.csv", *(f"report/{run}/{file}" for run in (
+            "campaign_costs.csv", "friction_cost.csv", "friction_forms.csv", "friction_motion.csv",
+            "friction_velocities.csv", "friction_bounds.csv", "coulomb_peers.csv", "peer_times.csv", "hidden_choices.csv",
+            "hidden_choices_claims.csv", "hidden_choices_fit.csv", "verdict_map.png", "modelled_workers.csv",
+            "running_simulation.csv", "large_scenes.csv", "cold_starts.csv", "ablation.csv",
+            "ladder/ladder.csv", "ladder/ladder_full_exact.csv", "report/verdicts.csv", *(f"report/{run}/{file}" for run in (
                 "scaling/bodies_50",
                 *(f"{name}/rock_pile" for name in ("one_thread", "schur_bodies", "solvers", "every_step", "karger")))
                                      for file in ("manifest.json", "steps.csv", "checksums")),
@@ -233,7 +233,8 @@ class ReferenceTest(unittest.TestCase):
         note = notes["extremes.csv"]
         self.assertEqual(note["command"], "scripts/extremes --seeds 1 --out out/reference/extremes")
         self.assertEqual(note["build"], {"git_hash": self.git("rev-parse", "HEAD"), "git_dirty": "false",
-                                         "flags": "-O3 -march=x86-64-v3", "build_type": "RelWithDebInfo"})
+                                         "compiler": "GCC 12.2.0", "flags": "-O3 -march=x86-64-v3",
+                                         "build_type": "RelWithDebInfo"})
         self.assertEqual(note["machine"], {"cpu_model": "Some CPU", "cores": 2})
 
     def test_what_is_done_is_kept_on_the_same_commit_and_machine_alone(self):

@@ -23,6 +23,7 @@ def key(argv):
         "threads": threads,
         "git_hash": "0123456789abcdef0123456789abcdef01234567",
         "git_dirty": "false",
+        "compiler": "GCC 12.2.0",
         "flags": "-O3 -march=x86-64-v3",
         "build_type": "RelWithDebInfo",
         "cpu_model": "Some CPU",
@@ -45,6 +46,6 @@ def manifest_entries(argv=None):
     return {
         "run_id": parts["run_id"],
         "options": {"threads": parts["threads"]},
-        "build": {name: parts[name] for name in ("git_hash", "git_dirty", "flags", "build_type")},
+        "build": {name: parts[name] for name in ("git_hash", "git_dirty", "compiler", "flags", "build_type")},
         "machine": {name: parts[name] for name in ("cpu_model", "cores")},
     }

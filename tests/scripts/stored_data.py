@@ -121,8 +121,9 @@ def karger(root):
     cells += [("karger", trials, refiner, 50 - 5 * place + (10 if refiner == "none" else 0) - (10 if trials == 10000 else 0))
               for place, trials in enumerate((1, 10, 100, 1000, 10000)) for refiner in ("none", "fm")]
     rows = [{"scene": "rock_pile", "step": step, "partitioner": partitioner, "trials": trials, "refiner": refiner,
-             "interface_rows": cut + sign, "t_pr_ms": 1, "t_s_ms": cut}
+             "karger_method": "-" if trials == "-" else "contract", "interface_rows": cut + sign, "t_pr_ms": 1, "t_s_ms": cut}
             for step, sign in ((100, 1), (200, -1)) for partitioner, trials, refiner, cut in cells]
+    rows += [dict(rows[-1], trials=1, karger_method="recursive-bisection", interface_rows=90, step=step) for step in (100, 200)]
     write_csv(root / "karger.csv", rows)
 
 

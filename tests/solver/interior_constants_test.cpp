@@ -9,7 +9,7 @@
 
 #include "solver/direct_solver.h"
 #include "solver/registry.h"
-#include "solver/strategies/interior_constants_list.h"
+#include "tests/solver/interior_constants_list.h"
 #include "tests/solver/problem_makers.h"
 #include "tests/solver/solver_checks.h"
 

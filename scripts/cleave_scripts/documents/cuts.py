@@ -101,7 +101,7 @@ def _karger_line(scene, cells):
     needed = (karger_trials.trials_needed(cells, refiner) for refiner in karger_trials.REFINERS)
     rivals_ms, karger_ms = karger_trials.lowest_totals(cells)
     return [title(scene), *(of(rival) for rival in karger_trials.RIVALS),
-            *(of((trials, "fm")) for trials in karger_trials.TRIALS),
+            *(of((trials, "fm")) for trials in karger_trials.TRIALS), of((karger_trials.BISECTION, "fm")),
             *("more" if math.isinf(trials) else trials for trials in needed), text.number(rivals_ms), text.number(karger_ms)]
 
 
@@ -112,9 +112,10 @@ def karger(stored):
     steps = len({row["step"] for row in rows})
     return (f"Interface rows / t_pr in ms, means over {steps} recorded steps of a scene (`{KARGER[1]}`; "
             f"{stored.origin(KARGER[0])}); then the least trials that cut no more rows than {rivals[0]}, and the lowest t_pr + "
-            f"t_s of {' and '.join(rivals)} and of karger with any number of trials, one thread, `schur`, ms:\n\n" +
+            f"t_s of {' and '.join(rivals)} and of karger with any number of trials, one thread, `schur`, ms. By least cuts: "
+            f"`karger_method` {karger_trials.BISECTION}, one trial:\n\n" +
             text.table(["scene", *rivals, *(f"karger+fm, {trials}" for trials in karger_trials.TRIALS),
-                        "trials needed, none", "trials needed, fm", "lowest total", "of karger"], lines))
+                        "by least cuts+fm, 1", "trials needed, none", "trials needed, fm", "lowest total", "of karger"], lines))
 
 
 BLOCKS = {"ablation": ablation, "ablation_facts": ablation_facts, "partition_speed": partition_speed,

@@ -1,9 +1,10 @@
 """What the cheaper friction models change, in one step and in a motion, what the others cost,
 and Coulomb's law beside Siconos."""
+import math
 import statistics
 
 from cleave_scripts.documents.stored import need
-from cleave_scripts.measurements import bound_ratios, coulomb_beside_siconos as siconos
+from cleave_scripts.measurements import bound_ratios, coulomb_beside_siconos as siconos, friction_forms as forms
 from cleave_scripts.measurements.friction_bounds import DEFAULT_SWEEPS
 from cleave_scripts.measurements.friction_cost import CONE_OPTIONS, LAW_OPTIONS
 from cleave_scripts.measurements.friction_of_models import IN_A_STEP, MODELS
@@ -13,6 +14,7 @@ from cleave_scripts.table import text
 MADE_BY = "scripts/friction_models"
 VELOCITIES, MOTION = (("friction_velocities.csv", MADE_BY), ("friction_motion.csv", MADE_BY))
 BOUNDS = ("friction_bounds.csv", MADE_BY)
+FORMS = ("friction_forms.csv", "scripts/friction_forms")
 COST = ("friction_cost.csv", "scripts/friction_cost")
 COULOMB = ("coulomb_peers.csv", "scripts/coulomb_peers")
 
@@ -95,5 +97,30 @@ def coulomb_beyond(stored):
             f"motors are refused.\n\n{siconos.beyond_table(rows)}")
 
 
+def _of_form(rows, form, friction, name, told):
+    """Cells of a model: what was measured, and the closed form in brackets."""
+    return [f"{told(float(row[name]))} ({told(float(row[f'closed_form_{name}']))})"
+            for row in rows if (row["form"], row["friction"]) == (form, friction)]
+
+
+def friction_forms(stored):
+    rows = need(stored.table(*FORMS), "closed forms of friction", "closed_form_mu")
+    holds, lifts = ([row for row in rows if row["form"] == form] for form in (forms.HOLDS, forms.LIFTS))
+    models = dict.fromkeys(row["friction"] for row in rows)
+    steep = math.tan(math.radians(forms.INCLINE_DEG))
+    angles = [f"{angle} degrees" for angle in dict.fromkeys(row["angle_deg"] for row in holds)]
+    speeds = [f"{speed} m/s" for speed in dict.fromkeys(row["speed_m_per_s"] for row in lifts)]
+    return (f"A flat block on a slope of {forms.INCLINE_DEG} degrees: the coefficient from which on it holds, over the tangent "
+            "of the slope, by the angle between downhill and the nearest axis of its friction rows; closed forms in brackets "
+            f"(`{FORMS[1]}`; {stored.origin(FORMS[0])}):\n\n" +
+            text.table(["", *angles], [[model, *_of_form(holds, forms.HOLDS, model, "mu", lambda mu: f"{mu / steep:.3f}")]
+                                       for model in models]) +
+            f"\n\nThe same block sliding on the level with a coefficient of {forms.SLIDING_MU}: by how much it rises in a step "
+            "of a sixtieth of a second, mm, by its speed before; closed forms in brackets:\n\n" +
+            text.table(["", *speeds], [[model, *_of_form(lifts, forms.LIFTS, model, "lift_m", lambda m: f"{1000 * m:.3f}")]
+                                       for model in models]))
+
+
 BLOCKS = {"friction_velocities": friction_velocities, "friction_motion": friction_motion, "friction_cost": friction_cost,
-          "friction_bounds": friction_bounds, "coulomb_peers": coulomb_peers, "coulomb_beyond": coulomb_beyond}
+          "friction_bounds": friction_bounds, "friction_forms": friction_forms, "coulomb_peers": coulomb_peers,
+          "coulomb_beyond": coulomb_beyond}

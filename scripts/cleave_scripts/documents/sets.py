@@ -50,6 +50,9 @@ SETS = {
     "friction_bounds.csv": (
         "the bounds of the box by the sweeps that predict them, and what a sweep costs",
         "scripts/friction_models"),
+    "friction_forms.csv": (
+        "from which coefficient on a block holds on a slope, and how far one that slides lifts off, beside closed forms",
+        "scripts/friction_forms"),
     "friction_cost.csv": (
         "steps under the cone and under Coulomb's law beside the same steps under the box, in turn",
         "scripts/friction_cost"),

@@ -5,6 +5,7 @@ import math
 import statistics
 
 TRIALS = (1, 10, 100, 1000, 10000)
+BISECTION = "recursive-bisection"  # karger_method, tried once
 RIVALS = (("mindp", "fm"), ("mix", "fm"))
 GOAL = RIVALS[0]
 REFINERS = ("none", "fm")
@@ -18,13 +19,18 @@ class Cell:
     total_ms: float  # t_pr + t_s
 
 
+def _kind(row):
+    if row["trials"] == "-":
+        return row["partitioner"]
+    return BISECTION if row["karger_method"] == BISECTION else int(row["trials"])
+
+
 def cells_of(rows, scene):
-    """{(partitioner or number of trials, refiner): Cell}"""
+    """{(partitioner, number of trials or BISECTION, refiner): Cell}"""
     found = {}
     for row in rows:
         if row["scene"] == scene:
-            found.setdefault((row["partitioner"] if row["trials"] == "-" else int(row["trials"]), row["refiner"]),
-                             []).append(row)
+            found.setdefault((_kind(row), row["refiner"]), []).append(row)
 
     def mean(steps, *columns):
         return statistics.fmean(sum(float(step[column]) for column in columns) for step in steps)

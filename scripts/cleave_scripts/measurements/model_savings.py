@@ -3,6 +3,7 @@ import dataclasses
 import re
 import statistics
 
+from cleave_scripts.measurements.every_scene import MECHANISM_OPTIONS
 from cleave_scripts.results.programs import ROOT
 
 
@@ -24,6 +25,8 @@ CASES = {
     "rock pile without friction": Case(("--scene", "rock_pile", "--mu", 0)),
     "large rock pile": Case(("--scene", "large_rock_pile")),
     "silo": Case(("--scene", "silo")),
+    "crane": Case(("--scene", "crane", *MECHANISM_OPTIONS)),
+    "mixed site": Case(("--scene", "mixed_site", *MECHANISM_OPTIONS)),
     "log tower at rest": Case(("--scene", "file@path=" + STANDING_TOWER), 300, 600),
     "chain drop at rest": Case(("--scene", "chain_drop", "--mu", 0), 16000, 16500),
     "chain drop, heaped": Case(("--scene", "chain_drop"), 3000, 3500),

@@ -7,7 +7,7 @@ import subprocess
 
 from cleave_scripts.results.errors import ResultError, last_line
 
-BUILD = ("git_hash", "git_dirty", "flags", "build_type")
+BUILD = ("git_hash", "git_dirty", "compiler", "flags", "build_type")
 MACHINE = ("cpu_model", "cores")
 
 
