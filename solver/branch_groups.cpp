@@ -40,7 +40,7 @@ void BranchGroups::join(const BlockSymbolic& symbolic, int threads) {
     if (joins(branches[b], b)) work_[branches[b].parent] += work_[b];
   number(branches);
   sort_into_buckets(
-      count, this->count(), [this](int b) { return group_[b]; }, first_, branches_);
+      count, group_count(), [this](int b) { return group_[b]; }, first_, branches_);
   list_tasks(symbolic);
 }
 
@@ -50,10 +50,10 @@ void BranchGroups::number(std::span<const Branch> branches) {
   parent_.clear();
   for (int b = static_cast<int>(branches.size()) - 1; b >= 0; --b) {
     const int parent = branches[b].parent;
-    group_[b] = joins(branches[b], b) ? group_[parent] : count();
-    if (group_[b] == count()) parent_.push_back(parent < 0 ? -1 : group_[parent]);
+    group_[b] = joins(branches[b], b) ? group_[parent] : group_count();
+    if (group_[b] == group_count()) parent_.push_back(parent < 0 ? -1 : group_[parent]);
   }
-  const int last = count() - 1;
+  const int last = group_count() - 1;
   for (int& group : group_) group = last - group;
   for (int& parent : parent_)
     if (parent >= 0) parent = last - parent;
@@ -61,16 +61,16 @@ void BranchGroups::number(std::span<const Branch> branches) {
 }
 
 void BranchGroups::list_tasks(const BlockSymbolic& symbolic) {
-  const int last = 2 * count() - 1;
+  const int last = 2 * group_count() - 1;
   waits_.clear();
   places_.clear();
-  for (int g = 0; g < count(); ++g) places_.push_back(symbolic.branches()[branches(g).front()].place);
-  for (int g = count() - 1; g >= 0; --g) {
+  for (int g = 0; g < group_count(); ++g) places_.push_back(symbolic.branches()[branches(g).front()].place);
+  for (int g = group_count() - 1; g >= 0; --g) {
     places_.push_back(places_[g]);
     waits_.emplace_back(g, parent_[g] >= 0 ? parent_[g] : last - g);
     if (parent_[g] >= 0) waits_.emplace_back(last - parent_[g], last - g);
   }
-  graph_.build(2 * count(), waits_, places_);
+  graph_.build(2 * group_count(), waits_, places_);
 }
 
 // As if no branch were joined, so that what is refused does not depend on the number of threads: a branch has

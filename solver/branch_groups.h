@@ -19,12 +19,12 @@ class BranchGroups {
  public:
   // Groups are numbered so that each comes before the one that its parent is in. Buffers are kept.
   void join(const BlockSymbolic& symbolic, int threads);
-  int count() const { return static_cast<int>(parent_.size()); }
+  int group_count() const { return static_cast<int>(parent_.size()); }
   // Ascending: children first.
   std::span<const int> branches(int group) const {
     return std::span(branches_).subspan(first_[group], first_[group + 1] - first_[group]);
   }
-  // Forward through group g is task g, backward task 2 count() - 1 - g.
+  // Forward through group g is task g, backward task 2 group_count() - 1 - g.
   const TaskGraph& graph() const { return graph_; }
   void count(MemoryCount& memory) const;
 

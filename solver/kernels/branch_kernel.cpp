@@ -104,7 +104,7 @@ bool BranchKernel::factor(const RowWeights& weights, ParallelTasks& tasks, const
 template <class Before, class After>
 void BranchKernel::substitute(ParallelTasks& tasks, const Before& before, const After& after) {
   BlockCholesky& cholesky = matrix_.cholesky();
-  const int count = substitution_.count();
+  const int count = substitution_.group_count();
   tasks.run(Stage::solve, substitution_.graph(), [&](int task) {
     if (task < count) {
       for (const int branch : substitution_.branches(task)) {

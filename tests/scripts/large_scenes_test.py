@@ -9,7 +9,7 @@ import unittest.mock
 import numpy
 import stored_data
 from stand_in import NOTES_ITS_CALL, StandInCase
-from synthetic import PROGRAM
+from synthetic import PROGRAM, ROOT
 
 from cleave_scripts.documents import large
 from cleave_scripts.documents.stored import Stored
@@ -146,12 +146,16 @@ else:
                            t_s_factor_local_ms=2, factor_mflop_local=0.01, factor_mflop_done=60, peak_memory_mb=100,
                            partitioner="-", refiner="-", status=os.environ.get("STAND_IN_STATUS", status))])
 """
-BENCHMARK = """#!/usr/bin/python3
+BENCHMARK = f"""#!/usr/bin/python3
 import json, os, sys
+sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+""" + """import stand_in_key
+context = {name: value for name, value in stand_in_key.key(sys.argv).items() if name.startswith("git_")}
+context |= json.loads(os.environ.get("STAND_IN_CONTEXT", "{}"))
 with open(os.environ["STAND_IN_LOG"], "a") as log:
     log.write("benchmark " + " ".join(sys.argv[1:]) + "\\n")
 given = dict(word.split("=", 1) for word in sys.argv[1:])
-json.dump({"benchmarks": [{"name": f"{name}/3000/manual_time", "run_type": "iteration", "gflop_per_s": rate}
+json.dump({"context": context, "benchmarks": [{"name": f"{name}/3000/manual_time", "run_type": "iteration", "gflop_per_s": rate}
                           for name, rate in (("cholesky:AVX2", 30), ("cholesky:AVX-512", 40), ("cholesky_2", 60))]},
           open(given["--benchmark_out"], "w"))
 """
@@ -192,6 +196,11 @@ class LargeScenesTest(StandInCase):
         self.assertIn(f"| 2 | 1 | 1000 | 2 | 2.00 | 1.0e-5 | {0.01 / pair:.2f} | 30.0 | 40.0 | 75 % | holds |", said)
         self.assertIn("| 30.0 | 60.0 | 50 % | does not hold |", said)
         self.assertTrue(said.endswith("Solves that waited more than 5 % of t_s a thread for a core are left out: 0.\n"), said)
+
+    def test_a_benchmark_of_another_build_is_refused(self):
+        with unittest.mock.patch.dict(os.environ, STAND_IN_CONTEXT='{"git_hash": "ffffffffffff"}'):
+            said = self.run_it("--piles", "10", "--silos", 2, "--rounds", 1, code=1).stderr.splitlines()[-1]
+        self.assertIn("are builds of commits ffffffffff", said)
 
     def test_options_and_failures_are_one_line(self):
         self.check_refused((("--piles", "1"), "--piles has '1', expected a whole number from 2 to 200000"),

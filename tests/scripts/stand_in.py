@@ -6,10 +6,13 @@ import unittest
 
 from synthetic import PROGRAM, ROOT, run_script
 
-# What a stand-in begins with: its words, the options given among them, and the note of its call.
+# What a stand-in begins with: its words, the options given among them, and the note of its call. Asked for its key, it says
+# that alone.
 NOTES_ITS_CALL = f"""#!/usr/bin/python3
 import os, pathlib, sys
 sys.path.insert(0, {str(ROOT / "tests" / "scripts")!r})
+import stand_in_key
+stand_in_key.answer()
 words = sys.argv[1:]
 given = dict(zip(words, words[1:]))
 with open(os.environ["STAND_IN_LOG"], "a") as log:

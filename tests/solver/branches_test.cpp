@@ -118,7 +118,7 @@ bool waits(const TaskGraph& graph, int earlier, int later) {
 void check_groups(const BlockSymbolic& symbolic, int threads) {
   BranchGroups groups;
   groups.join(symbolic, threads);
-  const int count = groups.count(), last = 2 * count - 1;
+  const int count = groups.group_count(), last = 2 * count - 1;
   ASSERT_EQ(groups.graph().task_count(), 2 * count);
   std::vector<int> group_of(symbolic.branches().size(), -1);
   for (int g = 0; g < count; ++g) {
@@ -158,13 +158,13 @@ TEST(BranchesTest, AreJoinedOnSeveralThreadsOnly) {
   const int branches = static_cast<int>(symbolic.branches().size());
   BranchGroups groups;
   groups.join(symbolic, 1);
-  EXPECT_EQ(groups.count(), branches);
+  EXPECT_EQ(groups.group_count(), branches);
   groups.join(symbolic, 16);
-  const int of_many = groups.count();
+  const int of_many = groups.group_count();
   EXPECT_LT(of_many, branches);
   groups.join(symbolic, 2);
-  EXPECT_LE(groups.count(), of_many);
-  EXPECT_GE(groups.count(), 6);
+  EXPECT_LE(groups.group_count(), of_many);
+  EXPECT_GE(groups.group_count(), 6);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ def dense_rates(program, path):
     run([benchmark_beside(program, "dense_benchmark"), f"--benchmark_filter=^cholesky.*/{DENSE_ROWS}/",
          f"--benchmark_repetitions={DENSE_REPETITIONS}", "--benchmark_min_time=0.02", f"--benchmark_out={path}",
          "--benchmark_out_format=json"], stdout=subprocess.DEVNULL)
-    rates = dense_ratios.gflops(load_benchmark(path))
+    rates = dense_ratios.gflops(load_benchmark(path, program))
     widest = [name for name in dense_ratios.SETS if f"cholesky:{name}/{DENSE_ROWS}" in rates][-1]
     return {1: rates[f"cholesky:{widest}/{DENSE_ROWS}"], 2: rates[f"cholesky_2/{DENSE_ROWS}"]}
 
