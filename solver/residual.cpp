@@ -27,7 +27,7 @@ bool all_finite(std::span<const double> values) {
 void write_velocities(const BodyStates& bodies, std::span<double> velocity) {
   for (std::size_t i = 0; i < bodies.velocity.size(); ++i)
     for (int k = 0; bodies.is_needed[i] && k < 6; ++k)
-      velocity[6 * i + k] = static_cast<double>(bodies.velocity[i][k]);
+      velocity[6 * i + k] = static_cast<double>(bodies.velocity[i].sum()[k]);
 }
 
 // The largest entry of |v0|, |J v0| and |b|.
@@ -67,7 +67,7 @@ void judge_energy(const StepProblem& problem, const BodyStates& bodies, std::spa
   Real gain = 0;
   Real kinetic = 0;
   for (int i = 0; i < problem.body_count(); ++i) {
-    const Vector6& velocity = bodies.velocity[i];
+    const Vector6 velocity = bodies.velocity[i].sum();
     gain += bodies.impulse[i].dot(velocity + ConstVector6(&problem.free_velocity[6 * i]).cast<Real>()) / 2;
     kinetic += velocity.dot(ConstMatrix6(&problem.mass[36 * i]).cast<Real>() * velocity) / 2;
   }

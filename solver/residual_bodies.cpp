@@ -37,6 +37,11 @@ Vector6 MassFactor::solve(Vector6 f) const {
   return f;
 }
 
+SplitVector6::SplitVector6(const Vector6& numbers) : high_(numbers.cast<double>()) {
+  for (int k = 0; k < 6; ++k)
+    low_[k] = std::isfinite(high_[k]) ? static_cast<double>(numbers[k] - high_[k]) : 0;
+}
+
 namespace {
 
 void mark_needed(const StepProblem& problem, std::span<const char> asked, BodyStates& bodies) {
@@ -89,8 +94,8 @@ BodyStates find_body_states(const StepProblem& problem, std::span<const double> 
   for (int i = 0; i < problem.body_count(); ++i) {
     if (!bodies.is_needed[i]) continue;
     bodies.mass_factor[i].compute(&problem.mass[36 * i]);
-    bodies.velocity[i] = ConstVector6(&problem.free_velocity[6 * i]).cast<Real>() +
-                         bodies.mass_factor[i].solve(bodies.impulse[i]);
+    bodies.velocity[i] = SplitVector6(ConstVector6(&problem.free_velocity[6 * i]).cast<Real>() +
+                                      bodies.mass_factor[i].solve(bodies.impulse[i]));
   }
   return bodies;
 }

@@ -32,6 +32,20 @@ class MassFactor {
   bool is_positive_ = false;
 };
 
+// Six numbers of extended precision, each as an exact sum of two doubles: its 64 bits are in 53 and 11 of
+// them. Two loads of a double and a sum take a quarter of the time of one load of extended precision, and
+// every row loads the velocities of its bodies.
+class SplitVector6 {
+ public:
+  SplitVector6() {}
+  explicit SplitVector6(const Vector6& numbers);
+  // Not evaluated: it is made where it is used.
+  auto sum() const { return high_.cast<Real>() + low_.cast<Real>(); }
+
+ private:
+  Eigen::Matrix<double, 6, 1> high_, low_;
+};
+
 // Of all bodies; those that are not needed have zeros for impulses, and no more. Side by side for each
 // quantity: every row looks at velocities, and few at the factors, which are far larger.
 struct BodyStates {
@@ -40,7 +54,7 @@ struct BodyStates {
 
   std::vector<char> is_needed;
   std::vector<Vector6> impulse;  // J^T lambda
-  std::vector<Vector6> velocity;
+  std::vector<SplitVector6> velocity;
   std::vector<MassFactor> mass_factor;
 };
 

@@ -63,15 +63,16 @@ Real find_diagonal(const StepProblem& problem, const BodyStates& bodies, int row
   return diagonal == 0 ? 1 : diagonal;
 }
 
-// w of a row or axis.
+// w of a row or axis. The speeds of both sides come first: a sum that waits for each of them in turn goes
+// through memory, in extended precision.
 template <class Row>
 Real find_slack(const StepProblem& problem, const BodyStates& bodies, int row, const Row& axis) {
-  Real slack = problem.compliance[row] * axis.impulse - axis.rhs;
-  for (int side = 0; side < 2; ++side) {
+  const auto speed = [&](int side) {
     const int body = problem.row_body[2 * row + side];
-    if (body >= 0) slack += axis.jacobian(side).dot(bodies.velocity[body]);
-  }
-  return slack;
+    return body < 0 ? Real(0) : axis.jacobian(side).dot(bodies.velocity[body].sum());
+  };
+  const Real of_a = speed(0), of_b = speed(1);
+  return problem.compliance[row] * axis.impulse - axis.rhs + of_a + of_b;
 }
 
 // d | lambda - clamp(lambda - w / d, lo, hi) | of one row, as | clamp(w, d (lambda - hi), d (lambda - lo)) |:
