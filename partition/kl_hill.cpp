@@ -57,8 +57,8 @@ class PairPasses {
       const Exchange swap = *best_swap(graph_, unit_, ours, theirs, std::numeric_limits<int>::min());
       const auto [i, j] = part_of_body_[swap.first] == a ? std::pair(swap.first, swap.second)
                                                          : std::pair(swap.second, swap.first);
-      std::erase_if(ours, [i](const SwapCandidate& candidate) { return candidate.body == i; });
-      std::erase_if(theirs, [j](const SwapCandidate& candidate) { return candidate.body == j; });
+      erase(i, ours);
+      erase(j, theirs);
       move(i, a, b);
       move(j, b, a);
       swaps.emplace_back(i, j);
@@ -106,6 +106,10 @@ class PairPasses {
     std::vector<SwapCandidate> side;
     for (const int body : bodies_[part]) side.push_back({0, body});
     return side;
+  }
+
+  static void erase(int body, std::vector<SwapCandidate>& side) {
+    std::erase_if(side, [body](const SwapCandidate& candidate) { return candidate.body == body; });
   }
 
   // With their present D.

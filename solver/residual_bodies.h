@@ -32,9 +32,9 @@ class MassFactor {
   bool is_positive_ = false;
 };
 
-// Six numbers of extended precision, each as an exact sum of two doubles: its 64 bits are in 53 and 11 of
-// them. Two loads of a double and a sum take a quarter of the time of one load of extended precision, and
-// every row loads the velocities of its bodies.
+// Six numbers of extended precision, each as a sum of two doubles, exact within their range: its 64 bits are
+// in 53 and 11 of theirs. Every row loads the velocities of its bodies, and to load and add two doubles takes
+// less time than to load one number of extended precision: a sixth of a whole look at resting rows.
 class SplitVector6 {
  public:
   SplitVector6() {}

@@ -3,6 +3,7 @@
 #include <memory>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "harness/base/numbers.h"
 #include "harness/commands/command.h"
@@ -42,11 +43,12 @@ RunOptions parse_record_options(const Given& typed) {
   // One solver and one way to split: what no part of them has is refused as in any run.
   Given one = all.given;
   std::set<std::string> not_typed = all.stored;
-  if (one.emplace("partitioner", default_run_options().partitioners.front().text).second)
-    not_typed.insert("partitioner");
-  if (one.emplace("refiner", default_run_options().refiners.front().text).second) not_typed.insert("refiner");
+  const RunOptions defaults = default_run_options();
+  for (const auto& [name, first] : {std::pair("partitioner", &defaults.partitioners.front()),
+                                    std::pair("refiner", &defaults.refiners.front())})
+    if (one.emplace(name, first->text).second) not_typed.insert(name);
   if (one.contains("advance")) read_named("advance", one["advance"]);  // errors name what was given
-  one["solver"] = one.contains("advance") ? one["advance"] : default_run_options().advance.text;
+  one["solver"] = one.contains("advance") ? one["advance"] : defaults.advance.text;
   RunOptions options = parse_run_options(one, not_typed);
   check_parts_wanted(all, options);
   keep_one(all.given, "partitioner", options.partitioners);

@@ -8,8 +8,9 @@ import unittest
 import numpy
 from stand_in import NOTES_ITS_CALL, StandInCase
 
-from cleave_scripts.measurements.friction_forms import (ANGLES_DEG, HOLDS, INCLINE_DEG, LIFTS, MODELS, SPEEDS_M_PER_S,
+from cleave_scripts.measurements.friction_forms import (ANGLES_DEG, HOLDS, INCLINE_DEG, LIFTS, SPEEDS_M_PER_S,
                                                         closed_form_mu, normal_of)
+from cleave_scripts.measurements.friction_of_models import MODELS
 
 STAND_IN = NOTES_ITS_CALL + """import friction_forms_test
 friction_forms_test.answer(given)

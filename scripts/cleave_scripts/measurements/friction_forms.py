@@ -10,11 +10,11 @@ import math
 
 import numpy
 
+from cleave_scripts.measurements.friction_of_models import MODELS
 from cleave_scripts.results.command import say
 from cleave_scripts.results.programs import run
 from cleave_scripts.results.steps import load_steps
 
-MODELS = ("box", "box-converged", "cone", "coulomb")
 COLUMNS = ("form", "friction", "angle_deg", "mu", "closed_form_mu", "speed_m_per_s", "lift_m", "closed_form_lift_m")
 HOLDS, LIFTS = "holds", "lifts"
 INCLINE_DEG, ANGLES_DEG = 20, (0, 15, 30, 45)
