@@ -10,6 +10,8 @@
 //
 // Cones of very different masses, or of a large mu, may stop the first steps short and leave products that no
 // direction brings back to the centre. Such an iteration begins anew, further inside and with shorter steps.
+// So does one between bounds that ends without an answer: from impulses that are nearly right, full steps may
+// make the error grow for a while, which cannot be told from rounding.
 //
 // Under Coulomb's law every direction is that of the law (coulomb_shift.h). The problem is then not convex,
 // and the iteration may stall where the exact solve does not: that is tried before the first iteration, from
@@ -41,11 +43,11 @@ constexpr double kNextStalledPolish = 0.5;
 // that came right had at most ten.
 constexpr int kHopelessIterations = 20;
 
-// With cones: so many steps in a row below this length, and the iteration begins anew with products of so
-// many times the energy and with this share of the way to the boundary. Two to four boxes with masses in
-// ratios of 1e5 and 1e6 that spin are solved in some 30 iterations then and were not in 100. Of 240 random
-// problems (mu up to 1000, compliances down to 0) 191 are solved and were 177, all of those among them; after
-// 5 short steps two of these were lost, 12 take more factorisations.
+// With cones: so many steps in a row below this length, and the iteration begins anew. It does so, as where
+// it ended without an answer, with products of so many times the energy and this share of the way to the
+// boundary. Two to four boxes with masses in ratios of 1e5 and 1e6 that spin are solved in some 30 iterations
+// then and were not in 100. Of 240 random problems (mu up to 1000, compliances down to 0) 191 are solved and
+// were 177, all of those among them; after 5 short steps two of these were lost, 12 take more factorisations.
 constexpr int kMostShortSteps = 8;
 constexpr double kShortStep = 0.05;
 constexpr double kFurtherInside = 3e4, kCarefulFraction = 0.9;
@@ -83,7 +85,7 @@ class InteriorPoint : public Strategy {
   bool has_coulomb_ = false, has_convex_cones_ = false;
   bool is_careful_ = false;  // the iteration has begun anew
   int iterations_left_ = 0, short_steps_ = 0;
-  // With convex cones: of the start, and the best before the iteration began anew.
+  // But under Coulomb's law: of the start, and the best before the iteration began anew.
   std::vector<double> warm_impulse_, earlier_impulse_;
   bool is_start_ = true, best_is_start_ = false;  // of cones, whose error is that of the impulses alone
   bool rounds_ = false;                           // there are rows that delta may matter to
@@ -176,11 +178,11 @@ bool InteriorPoint::run(SolveState& state) {
   is_careful_ = false;
   iterations_left_ = state.options.max_iterations;
   begin(state);
-  if (has_convex_cones_) warm_impulse_ = state.impulse;
+  if (!has_coulomb_) warm_impulse_ = state.impulse;
   if (has_coulomb_ && end_.attempt(state, iterate_)) return true;
   iterate_.start(state);
   if (search(state) || finish(state)) return true;
-  return has_convex_cones_ && iterations_left_ > 0 && search_from_further_inside(state);
+  return !has_coulomb_ && iterations_left_ > 0 && search_from_further_inside(state);
 }
 
 // Where it finds no answer either, the better impulses of the two stay.

@@ -47,6 +47,37 @@ TEST(Ladder, TheExactSolverHoldsOnEveryCheapRung) {
   }
 }
 
+// Of the rung stiff_pile. Step 505 starts so near to its answer that the interior point's error grows at
+// first.
+TEST(Ladder, TheStiffestPileIsExactToItsLastStep) {
+  const TemporaryDirectory directory;
+  const ProgramResult result = run_cleave({"run",
+                                           "--scene",
+                                           "rock_pile",
+                                           "--bodies",
+                                           "20",
+                                           "--cfm",
+                                           "1e-14",
+                                           "--dt",
+                                           "0.016666666666666666",
+                                           "--erp",
+                                           "0.2",
+                                           "--mu",
+                                           "0.5",
+                                           "--steps",
+                                           "600",
+                                           "--measure-every",
+                                           "1",
+                                           "--repeats",
+                                           "1",
+                                           "--solver",
+                                           "exact",
+                                           "--out",
+                                           directory / "run"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(read_csv(directory / "run/steps.csv").rows.size(), 600u);
+}
+
 TEST(Ladder, BaselinesClimbAsFarAsTheyCan) {
   const TemporaryDirectory directory;
   const CsvTable table = run_ladder(directory, "heavy_top,chain_bob,no_contact",

@@ -7,11 +7,12 @@ import unittest
 import stored_data
 from synthetic import ROOT, SCRIPTS, run_script, write_manifest
 
-from cleave_scripts.documents import (accuracy, campaigns, cuts, friction, hidden, large, markers, paper_claims, paper_table,
-                                      peers, sets, speed, stability, worth)
+from cleave_scripts.documents import (accuracy, campaigns, cuts, friction, hidden, large, markers, modelled_cost, paper_claims,
+                                      paper_table, peers, sets, speed, stability, worth)
 from cleave_scripts.documents.stored import NoResults, Stored
-from cleave_scripts.measurements import (coulomb_beside_siconos, extremes_steps, friction_bounds, friction_cost, friction_forms,
-                                         large_scenes, partition_worth, peer_times, running_simulation)
+from cleave_scripts.measurements import (coulomb_beside_siconos, elimination_orders, extremes_steps, friction_bounds,
+                                         friction_cost, friction_forms, large_scenes, objectives, partition_worth, peer_times,
+                                         running_simulation)
 from cleave_scripts.measurements.reference_stages import STAGES
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.table import text
@@ -29,8 +30,8 @@ class CheckoutTest(unittest.TestCase):
 
     def test_every_part_stands_in_a_document_and_every_document_has_one(self):
         found = [markers.names((ROOT / name).read_text()) for name in DOCUMENTS]
-        modules = (accuracy, campaigns, cuts, friction, hidden, large, paper_claims, paper_table, peers, sets, speed,
-                   stability, worth)
+        modules = (accuracy, campaigns, cuts, friction, hidden, large, modelled_cost, paper_claims, paper_table, peers, sets,
+                   speed, stability, worth)
         self.assertEqual(sorted(sum(found, [])), sorted(name for module in modules for name in module.BLOCKS))
         self.assertTrue(all(found))
 
@@ -71,6 +72,8 @@ class CheckoutTest(unittest.TestCase):
                    "large_scenes.csv": set(large_scenes.COLUMNS), "friction_cost.csv": set(friction_cost.COLUMNS),
                    "friction_bounds.csv": set(friction_bounds.COLUMNS), "friction_forms.csv": set(friction_forms.COLUMNS),
                    "coulomb_peers.csv": set(coulomb_beside_siconos.COLUMNS),
+                   "partition_objectives.csv": set(objectives.COLUMNS),
+                   "elimination_orders.csv": set(elimination_orders.COLUMNS),
                    "partition_worth.csv": set(partition_worth.COLUMNS), "peer_times.csv": set(peer_times.COLUMNS)}
         for command in ("two_threads", "modelled_workers", "busy_machine", "idle_cost", "cold_starts", "karger",
                         "partition_over_time", "ablation"):
@@ -309,7 +312,7 @@ class BlocksTest(unittest.TestCase):
 
     def test_over_time(self):
         stored_data.partition_over_time(self.root)
-        self.assertIn("| rock pile, mix+fm | 0.100 | 4.00, 0.950 (0 / 50 / 50) | 1.00, 1.00 (100 / 0 / 0) |",
+        self.assertIn("| rock pile, mix+fm | 0.100 | 4.00, 0.950, 1.20 (0 / 50 / 50) | 1.00, 1.00, 1.00 (100 / 0 / 0) |",
                       worth.over_time(self.stored))
 
     def test_rows_that_are_missing_are_an_error(self):

@@ -39,6 +39,7 @@ LEFT = {
     "benchmark_partitioners": ["partition_benchmark.json"], "two_threads": ["two_threads.csv"],
     "karger": ["karger.csv"], "partition_over_time": ["partition_over_time.csv"],
     "partition_worth": ["partition_worth.csv", "partition_worth.png"], "partition_regret": ["partition_regret.csv"],
+    "partition_objectives": ["partition_objectives.csv"], "elimination_orders": ["elimination_orders.csv"],
     "modelled_workers": ["modelled_workers.csv"],
     "running_simulation": ["running_simulation.csv"], "large_scenes": ["large_scenes.csv"],
     "model_savings": ["model_savings.csv"], "campaign_costs": ["campaign_costs.csv"],
@@ -124,14 +125,15 @@ class ReferenceTest(unittest.TestCase):
     def test_all_is_made_in_order_and_replaces_what_was_there(self):
         calls, said = self.run_it()
         self.assertEqual([call.split()[0] for call in calls], [stage.command[0] for stage in STAGES] + ["readme_tables"])
-        self.assertIn(f"[1/{len(STAGES)}] matrix, about 25 min: scripts/reproduce --measure-every 10 "
+        self.assertIn(f"[1/{len(STAGES)}] matrix, about 11 min: scripts/reproduce --measure-every 10 "
                       "--out out/reference/report", said)
         self.assertEqual(self.results(), {
             "README.md", "torture/torture.json", "provenance.json", "extremes.csv", "solver_benchmark.json",
             "partition_benchmark.json",
             "dense_benchmark.json", "busy_machine.csv", "idle_cost.csv",
             "two_threads.csv", "karger.csv", "partition_over_time.csv", "partition_worth.csv", "partition_worth.png",
-            "partition_regret.csv", "tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "price_of_accuracy.png",
+            "partition_regret.csv", "partition_objectives.csv", "elimination_orders.csv",
+            "tradeoff.csv", "tradeoff_partitions.csv", "tradeoff_motion.csv", "price_of_accuracy.png",
             "time_to_accuracy.png", "crossover.png", "accuracy_profile.png", "tradeoff_motion.png", "model_savings.csv",
             "campaign_costs.csv", "friction_cost.csv", "friction_forms.csv", "friction_motion.csv",
             "friction_velocities.csv", "friction_bounds.csv", "coulomb_peers.csv", "peer_times.csv", "hidden_choices.csv",

@@ -128,10 +128,11 @@ def karger(root):
 
 
 def partition_over_time(root):
-    """on-change takes a quarter of the time for 19/20 of the rows; all other rules do as always."""
+    """on-change takes a quarter of the time for 19/20 of the rows, its solves a fifth more; all other rules do as always."""
     rows = [{"scene": "rock_pile", "step": step, "partitioner": "mix", "refiner": "fm", "repartition": rule,
              "partition_origin": "fresh" if rule != "on-change" else origin,
-             "interface_rows": 95 if rule == "on-change" else 100, "t_pr_ms": 0.25 if rule == "on-change" else 1, "t_s_ms": 10}
+             "interface_rows": 95 if rule == "on-change" else 100, "t_pr_ms": 0.25 if rule == "on-change" else 1,
+             "t_s_ms": 12 if rule == "on-change" else 10}
             for step, origin in ((1, "repaired"), (2, "kept"))
             for rule in ("always", "on-change", "every:5", "every:20", "drift:0.05", "drift:0.2")]
     write_csv(root / "partition_over_time.csv", rows)

@@ -1,10 +1,14 @@
-"""Running simulations and very large scenes."""
+"""Running simulations, very large scenes, and the orders in which bodies are eliminated."""
 from cleave_scripts.documents.stored import need
+from cleave_scripts.measurements import elimination_orders as elimination
 from cleave_scripts.measurements import large_scenes as scenes
 from cleave_scripts.measurements import running_simulation as running
+from cleave_scripts.results.rows import group
+from cleave_scripts.table import text
 
 RUNNING = ("running_simulation.csv", "scripts/running_simulation")
 LARGE = ("large_scenes.csv", "scripts/large_scenes")
+ORDERS = ("elimination_orders.csv", "scripts/elimination_orders")
 
 
 def _rounds(rows):
@@ -27,4 +31,16 @@ def large_scenes(stored):
             f"in the same run:\n\n{silos}")
 
 
-BLOCKS = {"running_simulation": running_simulation, "large_scenes": large_scenes}
+def elimination_orders(stored):
+    rows = need(stored.table(*ORDERS), "orders of elimination", "factor_mflop")
+    lines = []
+    for (scene, bodies, step), of_step in group(rows, "scene", "bodies", "step").items():
+        counts = {row["order"]: text.number(float(row["factor_mflop"])) for row in of_step}
+        lines.append([f"{scene.replace('_', ' ')}, {bodies} bodies, step {step}", of_step[0]["rows"],
+                      *(counts[order] for order in elimination.ORDERS)])
+    return (f"Mflop of one factorisation, counted without padding (`{ORDERS[1]}`; {stored.origin(ORDERS[0])}); leaves of a "
+            f"tree have at most so many bodies, `{elimination.CHOSEN}` is what that solver takes:\n\n" +
+            text.table(["", "rows", *elimination.ORDERS], lines))
+
+
+BLOCKS = {"running_simulation": running_simulation, "large_scenes": large_scenes, "elimination_orders": elimination_orders}

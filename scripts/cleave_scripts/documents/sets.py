@@ -21,7 +21,7 @@ SETS = {
         "random contraction after Karger with 1 to 10000 trials against `mindp+fm` and `mix+fm`",
         "scripts/karger"),
     "partition_over_time.csv": (
-        "the paper's scenes step by step under every rule of `--repartition`",
+        "every scene step by step under every rule of `--repartition`",
         "scripts/partition_over_time"),
     "partition_worth.csv": (
         "recorded steps by every kernel with many partitions, on one thread and on two",
@@ -30,6 +30,9 @@ SETS = {
     "partition_regret.csv": (
         "the partitioner `auto` against every cell of a grid, in turn",
         "scripts/partition_regret --rounds 4"),
+    "partition_objectives.csv": (
+        "parts that are to take little time against parts that are to cut few rows, in turn",
+        "scripts/partition_objectives"),
     "tradeoff.csv": (
         "recorded steps by every solver, those that iterate to residuals of 1e-1 to 1e-8",
         "scripts/tradeoff"),
@@ -98,6 +101,9 @@ SETS = {
         "steps of running simulations with and without `--session`, in sweeps of Gauss-Seidel",
         "scripts/running_simulation"),
     "large_scenes.csv": ("a step of rock piles and silos of up to 100000 bodies", "scripts/large_scenes"),
+    "elimination_orders.csv": (
+        "arithmetic of a factorisation in every order of elimination",
+        "scripts/elimination_orders"),
     "ablation.csv": ("interface rows under the open choices of the method", "scripts/ablation"),
     "figures": ("the pictures of the README", "scripts/readme_figures"),
 }

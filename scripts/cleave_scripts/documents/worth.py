@@ -4,18 +4,17 @@ import math
 import statistics
 
 from cleave_scripts.documents.stored import NoResults, need
-from cleave_scripts.measurements import modelled_times, partition_over_time, partition_worth, regret
+from cleave_scripts.measurements import modelled_times, partition_over_time, partition_worth
 from cleave_scripts.table import text
 
 OVER_TIME = ("partition_over_time.csv", "scripts/partition_over_time")
 WORTH = ("partition_worth.csv", "scripts/partition_worth")
-REGRET = ("partition_regret.csv", "scripts/partition_regret")
 SHOWN_WORKERS = (8, 64)
 
 
 def _course_cell(course, always):
     shares = " / ".join(f"{100 * share:.0f}" for share in course.shares.values())
-    return f"{text.number(course.saving(always))}, {text.number(course.rows(always))} ({shares})"
+    return ", ".join(text.number(ratio(always)) for ratio in (course.saving, course.rows, course.t_s)) + f" ({shares})"
 
 
 def over_time(stored):
@@ -26,8 +25,8 @@ def over_time(stored):
               *(_course_cell(found[rule], found[always]) for rule in rules)]
              for (scene, partitioner, refiner), found in partition_over_time.courses(rows).items()]
     return ("t_pr of `always` over its t_s (one thread, `auto:schur-bodies`), then how many times less t_pr a rule takes than "
-            "`always`, its interface rows against those of `always`, and of a hundred steps those with fresh / repaired / "
-            f"kept parts; sums over all steps with a constraint ({stored.origin(OVER_TIME[0])}):\n\n" +
+            "`always`, its interface rows and its t_s against those of `always`, and of a hundred steps those with fresh / "
+            f"repaired / kept parts; sums over all steps with a constraint ({stored.origin(OVER_TIME[0])}):\n\n" +
             text.table(["", "t_pr / t_s", *rules], lines))
 
 
@@ -157,18 +156,4 @@ def partition_share(stored):
             text.table(["", *map(_named, partition_worth.SHARED)], lines))
 
 
-def regret_of_auto(stored):
-    """auto against the best cell of its grid."""
-    found = regret.regrets(need(stored.table(*REGRET), "auto", "replay"))
-    lines = [[f"{item.scene.replace('_', ' ')}, {item.solver}", item.best,
-              *map(text.number, (item.best_ms, item.baseline_ms, item.auto_ms)),
-              f"{100 * item.regret:+.0f} %", ", ".join(item.choices), "yes" if item.holds else "no"] for item in found]
-    return (f"t_pr + t_s, ms, one thread ({stored.origin(REGRET[0])}); `auto` holds where it takes at most "
-            f"{1 + regret.MOST_REGRET:g} times what the best cell takes and no more than {regret.BASELINE}. "
-            f"`{regret.ANY_KERNEL}` chooses the kernel too, against the cells of all kernels, whose replays are put at "
-            f"the pace of `{regret.WHOLE}` in each. The time of choosing, once a scene, is left out:\n\n" +
-            text.table(["", "best cell", "its time", regret.BASELINE, "auto", "regret", "auto chose", "holds"], lines))
-
-
-BLOCKS = {"over_time": over_time, "worth": worth, "semantic": semantic, "partition_share": partition_share,
-          "regret": regret_of_auto}
+BLOCKS = {"over_time": over_time, "worth": worth, "semantic": semantic, "partition_share": partition_share}

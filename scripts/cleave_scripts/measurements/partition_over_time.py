@@ -23,6 +23,9 @@ class Course:
     def rows(self, always):
         return self.interface_rows / always.interface_rows
 
+    def t_s(self, always):
+        return self.t_s_ms / always.t_s_ms
+
 
 def course_of(steps):
     origins = collections.Counter(step["partition_origin"] for step in steps)

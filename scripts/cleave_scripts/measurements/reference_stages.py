@@ -22,9 +22,9 @@ class Stage:
 
 
 STAGES = (
-    Stage("matrix", ("reproduce", "--measure-every", "10", "--out", "{out}"), 25, REPORT,
+    Stage("matrix", ("reproduce", "--measure-every", "10", "--out", "{out}"), 11, REPORT,
           runs=(("paper", "full"),), resumes=True),
-    Stage("report_runs", ("report_runs", "--measure-every", "25", "--out", "{out}"), 8, REPORT,
+    Stage("report_runs", ("report_runs", "--measure-every", "25", "--out", "{out}"), 4, REPORT,
           runs=tuple((name, f"report/{name.removeprefix('report/')}") for name in REPORT_RUNS), resumes=True),
     Stage("ladder", ("ladder", "--out", "{out}"), 4, REPORT, files=(("ladder.csv", "ladder/ladder.csv"),), resumes=True),
     Stage("ladder_full", ("ladder", "--full", "--solver", "exact", "--out", "{out}"), 2,
@@ -44,12 +44,16 @@ STAGES = (
           files=tuple((file, file) for file in ("partition_worth.csv", "partition_worth.png"))),
     Stage("partition_regret", ("partition_regret", "--rounds", "4", "--out", "{out}"), 21,
           files=(("partition_regret.csv", "partition_regret.csv"),)),
+    Stage("partition_objectives", ("partition_objectives", "--out", "{out}"), 6,
+          files=(("partition_objectives.csv", "partition_objectives.csv"),)),
     Stage("two_threads", ("two_threads", "--out", "{out}"), 50, files=(("two_threads.csv", "two_threads.csv"),)),
     Stage("modelled_workers", ("modelled_workers", "--out", "{out}"), 5,
           files=(("modelled_workers.csv", "modelled_workers.csv"),)),
     Stage("running_simulation", ("running_simulation", "--out", "{out}"), 3,
           files=(("running_simulation.csv", "running_simulation.csv"),)),
     Stage("large_scenes", ("large_scenes", "--out", "{out}"), 40, files=(("large_scenes.csv", "large_scenes.csv"),)),
+    Stage("elimination_orders", ("elimination_orders", "--out", "{out}"), 1,
+          files=(("elimination_orders.csv", "elimination_orders.csv"),)),
     Stage("cold_starts", ("cold_starts", "--out", "{out}"), 1, files=(("cold_starts.csv", "cold_starts.csv"),)),
     Stage("ablation", ("ablation", "--out", "{out}"), 3, files=(("ablation.csv", "ablation.csv"),)),
     Stage("extremes", ("extremes", "--seeds", "1", "--out", "{out}"), 12, files=(("extremes.csv", "extremes.csv"),),

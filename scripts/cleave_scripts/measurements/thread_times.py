@@ -11,12 +11,12 @@ import statistics
 from cleave_scripts.measurements.side_by_side import WAYS
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.names import base_name, said_parameters
+from cleave_scripts.results.rows import is_far
 from cleave_scripts.table import text
 
 LEAST_CEILING = 1.7  # below it a share says more of the machine
 ASKED_SHARE = 0.8  # of `schur` on every combination
 ASKED_OF_SWEEPS = {"pgs-colored": 0.75}  # least share of a solver that iterates
-FAR_NS = 300  # core_round_trip_ns from which cores are far apart, as the program says
 KEY = ("scene", "bodies", "cfm", "step", "solver", "partitioner", "refiner")
 
 
@@ -59,11 +59,6 @@ def _medians(rows, *columns):
     for row in rows:
         times.setdefault(tuple(str(row[column]) for column in columns), []).append(float(row["t_s_ms"]))
     return {key: statistics.median(values) for key, values in times.items()}
-
-
-def is_far(row):
-    """Rows without the column were measured before there was one."""
-    return float(row.get("core_round_trip_ns", math.nan)) >= FAR_NS
 
 
 def shares(rows):

@@ -1,5 +1,9 @@
 """What a row of steps.csv says of its solve; rows are dictionaries of texts."""
+import math
+
 from cleave_scripts.results.names import NO_PARTITIONER
+
+FAR_NS = 300  # core_round_trip_ns from which cores are far apart, as the program says
 
 
 def group(rows, *columns):
@@ -31,3 +35,8 @@ def total_ms(row):
 def relative_residual(row):
     """In units of the velocity scale, max(1 m/s, largest free velocity)."""
     return float(row["residual_m_per_s"]) / max(1.0, float(row["largest_free_velocity_m_per_s"]))
+
+
+def is_far(row):
+    """Whether its threads were on cores far apart. Rows without the column were measured before there was one."""
+    return float(row.get("core_round_trip_ns", math.nan)) >= FAR_NS

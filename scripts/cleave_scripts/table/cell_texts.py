@@ -1,7 +1,8 @@
 """What the formats of Table 1 have in common: numbers, notes and the order of rows."""
 import math
 
-from cleave_scripts.table.cells import MOST_WAITING, Cell
+from cleave_scripts.results.rows import FAR_NS
+from cleave_scripts.table.cells import MOST_FAR, MOST_WAITING, Cell
 
 GAP = "-"
 WAITED = "‡"
@@ -29,6 +30,10 @@ def scene_notes(tables):
     if waited:
         notes.append(f"{WAITED} The solves waited more than {100 * MOST_WAITING:.0f} % of t_s for a core, so "
                      f"other programs are in these times: {', '.join(waited)}.")
+    notes += [
+        f"{table.title}: for {100 * table.far:.0f} % of t_s the threads were on cores far apart, where they may take twice as "
+        f"long: core_round_trip_ns was {FAR_NS} or more." for table in tables if table.far > MOST_FAR
+    ]
     return notes
 
 

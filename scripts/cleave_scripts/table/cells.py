@@ -5,6 +5,7 @@ import math
 from cleave_scripts.results.names import title
 
 MOST_WAITING = 0.05  # of t_s, for a core; above it a mean says more of the machine's other work
+MOST_FAR = 0.05  # of t_s, on cores far apart; above it a mean says more of where they were
 
 
 @dataclasses.dataclass
@@ -64,6 +65,7 @@ class SceneTable:
     solver: str
     cells: list  # Cell, in the paper's order
     differs: str = ""  # how the runs differ from the paper's in size; empty where they do not
+    far: float = 0.0  # share of t_s on cores far apart
 
     @property
     def title(self):

@@ -9,6 +9,7 @@ from cleave_scripts.results.about import setup_columns
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.results.names import NO_PARTITIONER, in_order, said_parameters
 from cleave_scripts.results.paper import PAPER, PARTITIONERS, REFINERS, SCENES
+from cleave_scripts.results.rows import is_far
 from cleave_scripts.table.cells import Cell, SceneTable, Times
 
 NEEDED = ("scene", "seed", "step", "partitioner", "refiner", "solver", "threads", "status", "t_s_ms",
@@ -17,7 +18,7 @@ SAME_RUN = ("solver", "threads", "steps", "machine")  # besides what the setup i
 NOT_A_PARAMETER = "-"  # the value of a column that does not apply to a row
 UNKNOWN = "unknown"  # the value of a column that a file does not have
 # What else is looked at where it is there.
-READ_TOO = ("bodies", "t_s_waiting_ms")
+READ_TOO = ("bodies", "t_s_waiting_ms", "core_round_trip_ns")
 
 
 def build_tables(rows, paper, where=(), setup=setup_columns()):
@@ -46,7 +47,8 @@ def _scene_table(scene, rows, paper, setup):
     steps = {(row["seed"], row["step"]) for row in rows}
     cells = [_cell(scene, names, mine, len(steps), paper) for names, mine in _by_combination(rows).items()]
     mark_lowest(scene, cells, paper)
-    return SceneTable(scene, len(steps), rows[0]["threads"], rows[0]["solver"], cells, _differences(scene, rows))
+    first = rows[0]
+    return SceneTable(scene, len(steps), first["threads"], first["solver"], cells, _differences(scene, rows), far_share(rows))
 
 
 def _check_same(scene, rows, column):
@@ -118,6 +120,13 @@ def waiting_share(rows):
     known = [row for row in rows if "t_s_waiting_ms" in row and math.isfinite(row.number("t_s_waiting_ms"))]
     total = math.fsum(row.number("t_s_ms") for row in known)
     return math.fsum(row.number("t_s_waiting_ms") for row in known) / total if total > 0 else math.nan
+
+
+def far_share(rows):
+    """Of the time of all solves, that of those on cores far apart."""
+    measured = [row for row in rows if row["status"] == "ok"]
+    total = math.fsum(row.number("t_s_ms") for row in measured)
+    return math.fsum(row.number("t_s_ms") for row in measured if is_far(row)) / total if total > 0 else 0.0
 
 
 def mark_lowest(scene, cells, paper):
