@@ -47,9 +47,16 @@ class ReferenceSetTest(unittest.TestCase):
         read = [(name, provenance()[name]) for name in READ_FROM_RUNS]
         self.check_one_commit_and_machine([entry for entry in self.entries() if entry[0].endswith("manifest.json")] + read)
 
-    def test_what_else_scripts_reference_made_is_of_one_commit_and_machine(self):
-        """A measurement that was made anew by its own command since then names its own, and so does its table."""
-        self.check_one_commit_and_machine([entry for entry in provenance().items() if "out/reference/" in entry[1]["command"]])
+    def test_what_one_command_made_is_of_one_commit_and_machine(self):
+        """So is all that scripts/reference made. A measurement that was made anew by its own command since then names its own
+        commit, and so does its table; of all that was, nothing of scripts/reference is left."""
+        made = {}
+        for name, entry in provenance().items():
+            for maker in (entry["command"], *(["scripts/reference"] if "out/reference/" in entry["command"] else [])):
+                made.setdefault(maker, []).append((name, entry))
+        self.assertGreater(max(map(len, made.values())), 1)
+        for entries in made.values():
+            self.check_one_commit_and_machine(entries)
 
     def test_every_file_has_a_manifest_or_stands_in_provenance(self):
         described = set(provenance())
