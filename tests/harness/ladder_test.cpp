@@ -51,29 +51,9 @@ TEST(Ladder, TheExactSolverHoldsOnEveryCheapRung) {
 // first.
 TEST(Ladder, TheStiffestPileIsExactToItsLastStep) {
   const TemporaryDirectory directory;
-  const ProgramResult result = run_cleave({"run",
-                                           "--scene",
-                                           "rock_pile",
-                                           "--bodies",
-                                           "20",
-                                           "--cfm",
-                                           "1e-14",
-                                           "--dt",
-                                           "0.016666666666666666",
-                                           "--erp",
-                                           "0.2",
-                                           "--mu",
-                                           "0.5",
-                                           "--steps",
-                                           "600",
-                                           "--measure-every",
-                                           "1",
-                                           "--repeats",
-                                           "1",
-                                           "--solver",
-                                           "exact",
-                                           "--out",
-                                           directory / "run"});
+  const Arguments pile = {"--scene", "rock_pile", "--bodies", "20", "--cfm", "1e-14", "--steps", "600"};
+  const Arguments measured = {"--solver", "exact", "--measure-every", "1", "--repeats", "1"};
+  const ProgramResult result = run_cleave(Arguments{"run", "--out", directory / "run"} + pile + measured);
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(read_csv(directory / "run/steps.csv").rows.size(), 600u);
 }

@@ -12,6 +12,7 @@ from synthetic import PROGRAM
 from cleave_scripts.documents import large, modelled_cost
 from cleave_scripts.documents.stored import Stored
 from cleave_scripts.measurements import elimination_orders, objectives
+from cleave_scripts.measurements.every_scene import MOVED_FAST
 
 STAND_IN = NOTES_ITS_CALL + """import objectives_test
 objectives_test.answer(words, given)
@@ -98,7 +99,7 @@ class EliminationOrdersTest(unittest.TestCase):
 
     def test_every_order_is_counted_and_the_least_of_two_is_taken(self):
         """A silo that is large enough for dissection, and a pile that is not."""
-        for scene in (("silo", 2, ("--bodies", "2000", *elimination_orders.SWEPT)), ("rock_pile", 40, ("--bodies", "30"))):
+        for scene in (("silo", 2, ("--bodies", "2000", *MOVED_FAST)), ("rock_pile", 40, ("--bodies", "30"))):
             rows = self.count(*scene)
             self.assertEqual([row["order"] for row in rows], list(elimination_orders.ORDERS))
             counts = {row["order"]: float(row["factor_mflop"]) for row in rows}

@@ -48,8 +48,8 @@ class ReferenceSetTest(unittest.TestCase):
         self.check_one_commit_and_machine([entry for entry in self.entries() if entry[0].endswith("manifest.json")] + read)
 
     def test_what_one_command_made_is_of_one_commit_and_machine(self):
-        """So is all that scripts/reference made. A measurement that was made anew by its own command since then names its own
-        commit, and so does its table; of all that was, nothing of scripts/reference is left."""
+        """So is all that scripts/reference made, where a command of its own has not made it anew since: that names its own
+        commit, and so does its table."""
         made = {}
         for name, entry in provenance().items():
             for maker in (entry["command"], *(["scripts/reference"] if "out/reference/" in entry["command"] else [])):

@@ -232,7 +232,6 @@ class ComparisonTest(Table1Test):
         self.assertEqual(self.table("--format", "latex").count("$^\\ddagger$"), 2)  # the cell and the caption
         self.assertEqual(self.cells()["rock_pile", "mindp", "none"]["waiting_share"], "0.0755")
 
-
     def test_a_scene_whose_threads_were_far_apart_for_long_is_told(self):
         for rows, told in ((2, ""), (3, "Rock Pile: for 6 % of t_s the threads were on cores far apart")):
             write_steps(self.directory, [row | {"core_round_trip_ns": 300 if place < rows else 299.9 if place % 2 else "nan"}

@@ -14,9 +14,6 @@ KERNELS = ("schur-rows", "schur-bodies", "schur-nested")
 SIZES = (25, 100)  # most bodies of a part
 # Partitioners and refiners of one replay.
 REPLAYS = ((("mindp", "mix"), ("fm", "fm-cost")), (("multilevel", "multilevel-cost"), ("none",)))
-# Those whose objective is the cut, and the same by modelled time.
-METHODS = {("mindp", "fm"): ("mindp", "fm-cost"), ("mix", "fm"): ("mix", "fm-cost"),
-           ("multilevel", "none"): ("multilevel-cost", "none")}
 COLUMNS = ("scene", "bodies", "step", "solver", "partitioner", "refiner", "max_bodies", "parts", "interface_rows", "threads",
            "round", "status", "t_pr_ms", "t_s_ms")
 
@@ -25,8 +22,12 @@ def sized(partitioner, size):
     return f"{partitioner}@max-bodies={size}"
 
 
+# Of each size: the combination whose objective is the cut, and the same by modelled time.
 PAIRS = {f"{sized(partitioner, size)}+{refiner}": f"{sized(other, size)}+{other_refiner}"
-         for (partitioner, refiner), (other, other_refiner) in METHODS.items() for size in SIZES}
+         for partitioner, refiner, other, other_refiner in (
+             ("mindp", "fm", "mindp", "fm-cost"), ("mix", "fm", "mix", "fm-cost"),
+             ("multilevel", "none", "multilevel-cost", "none"))
+         for size in SIZES}
 
 
 @dataclasses.dataclass(frozen=True)
