@@ -2,11 +2,13 @@
 wrong exit code, or any change to the files. Every command stands in command_table.py, with every option."""
 import concurrent.futures
 import contextlib
+import json
 import os
 import pathlib
 import re
 import resource
 import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -30,6 +32,7 @@ exit 1
 """
 GARBAGE = {"text": b"no such thing\n1,2\n", "bytes": bytes(range(128, 256)), "nothing": b"", "a header": b"x\n",
            "a value": b"scene,step,status\nrock_pile,many,ok\n"}
+IN_SHELL = ("setup", "test")
 
 
 def files_of(directory):
@@ -56,10 +59,23 @@ class Scratch:
         return [word.format(**self.names) for word in words]
 
     def run(self, command, *words, **options):
+        return self.run_program([SCRIPTS / command, *self.words(words)], **options)
+
+    def run_program(self, words, **options):
         environment = dict(os.environ, CLEAVE_PROGRAM=str(self.program)) | options.pop("env", {})
-        options = {"stdout": subprocess.PIPE, **options}
-        return subprocess.run([SCRIPTS / command, *self.words(words)], cwd=self.names["empty"], env=environment,
-                              stderr=subprocess.PIPE, stdin=subprocess.DEVNULL, timeout=300, check=False, **options)
+        options = {"stdout": subprocess.PIPE, "timeout": 300, **({} if "input" in options else {"stdin": subprocess.DEVNULL}),
+                   **options}
+        return subprocess.run(words, cwd=self.names["empty"], env=environment, stderr=subprocess.PIPE, check=False, **options)
+
+    def run_one_after_another(self, command, many):
+        """The ends of the command with many words each, in one process where it is Python."""
+        if not many or command in IN_SHELL:
+            return [self.run(command, *words) for words in many]
+        program = [sys.executable, pathlib.Path(__file__).parent / "one_after_another.py", SCRIPTS / command]
+        result = self.run_program(program, input=json.dumps([self.words(words) for words in many]).encode())
+        assert result.returncode == 0, result.stderr
+        return [subprocess.CompletedProcess(words, code, stderr=said.encode())
+                for words, (code, said) in zip(many, json.loads(result.stdout.splitlines()[-1]), strict=True)]
 
 
 def fault(scratch, before, result, code=1, words=()):
@@ -81,7 +97,7 @@ def bad_values(command):
         if kind:
             yield (option,), (option, "needs a")
         for value in BAD[kind]:
-            yield (f"{option}={value}",) if command not in ("setup", "test") else (option, value), (
+            yield (f"{option}={value}",) if command not in IN_SHELL else (option, value), (
                 option.lstrip("-"), *([NEAR[value]] if value in NEAR else []))
     if not COMMANDS[command].passes_on:
         yield ("--no-such-option",), ("--no-such-option",)
@@ -89,20 +105,21 @@ def bad_values(command):
         yield ("--uot", "x"), ("did you mean --out?",)
 
 
+def words_for(command, wrong):
+    """With what the command cannot do without, unless that is what is wrong."""
+    given = COMMANDS[command].given
+    return (*given, *wrong) if wrong[0].partition("=")[0] not in given else wrong
+
+
 def faults_of_values(command):
     """One line a value that is not refused as it has to be."""
-    found = []
+    values = list(bad_values(command))
     with tempfile.TemporaryDirectory() as directory:
         scratch = Scratch(directory)
         before = files_of(scratch.root)
-        for words, told in bad_values(command):
-            given = [word for word in COMMANDS[command].given if word != words[0].partition("=")[0]]
-            kept = COMMANDS[command].given if given == list(COMMANDS[command].given) else ()
-            wrong = fault(scratch, before, scratch.run(command, *kept, *words), words=told)
-            if wrong:
-                found.append(f"{command} {' '.join(words)[:100]}: {wrong}")
-                before = files_of(scratch.root)
-    return found
+        ends = scratch.run_one_after_another(command, [words_for(command, words) for words, _ in values])
+        faults = {words: fault(scratch, before, end, words=told) for (words, told), end in zip(values, ends)}
+    return [f"{command} {' '.join(words)[:100]}: {wrong}" for words, wrong in faults.items() if wrong]
 
 
 class TableTest(unittest.TestCase):
@@ -158,26 +175,30 @@ class BadInputTest(unittest.TestCase):
         finally:
             os.close(writer)
 
+    def check_one_after_another(self, name, many):
+        for words, end in zip(many, self.scratch.run_one_after_another(name, many), strict=True):
+            with self.subTest(name, words=words):
+                self.check(end)
+
     def test_directories_that_are_not_there_or_hold_nothing(self):
         for name, command in COMMANDS.items():
-            for place in command.reads:
-                for value in ("", "{file}", "{out}/nowhere", "{empty}"):
-                    if value == "{file}" and name in ("table1", "check_matrix", "validate_model", "extremes_table"):
-                        value = "{out}"  # they read files too
-                    with self.subTest(name, value=value):
-                        self.check(self.scratch.run(name, *(value if word == place else word for word in command.given)))
+            # Some read files too.
+            file = "{out}" if name in ("table1", "check_matrix", "validate_model", "extremes_table") else "{file}"
+            self.check_one_after_another(name, [[value if word == place else word for word in command.given]
+                                                for place in command.reads for value in ("", file, "{out}/nowhere", "{empty}")])
 
     def test_files_that_hold_something_else(self):
+        directories = {}
         for file in ("steps.csv", "motion.h5"):
             for what, content in GARBAGE.items():
-                (self.scratch.names["empty"] / file).write_bytes(content)
-                self.before = files_of(self.scratch.root)
-                for name, command in COMMANDS.items():
-                    if command.reads and not (what == "a header" and name == "readme_tables"):
-                        with self.subTest(name, file=file, what=what):
-                            given = ("{empty}" if word in command.reads else word for word in command.given)
-                            self.check(self.scratch.run(name, *given))
-            (self.scratch.names["empty"] / file).unlink()
+                directories[file, what] = self.scratch.root / f"{file} {what}"
+                directories[file, what].mkdir()
+                (directories[file, what] / file).write_bytes(content)
+        self.before = files_of(self.scratch.root)
+        for name, command in COMMANDS.items():
+            self.check_one_after_another(name, [[str(directory) if word in command.reads else word for word in command.given]
+                                                for (_, what), directory in directories.items()
+                                                if command.reads and (what, name) != ("a header", "readme_tables")])
 
     def test_results_beside_their_input_have_a_place_that_can_be_written(self):
         tree = self.scratch.names["tree"]
