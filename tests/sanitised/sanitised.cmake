@@ -35,26 +35,6 @@ function(sanitised_quickly_compiled)
   endforeach()
 endfunction()
 
-# sanitised_units(): up to CMAKE_UNITY_BUILD_BATCH_SIZE sources are compiled as one, for which the compiler reads and instantiates
-# headers once. After all targets.
-function(sanitised_units)
-  execute_process(COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/tests/sanitised/units.py ${PROJECT_SOURCE_DIR}
-                          ${CMAKE_UNITY_BUILD_BATCH_SIZE}
-                  OUTPUT_VARIABLE LINES OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
-  string(REPLACE "\n" ";" LINES "${LINES}")
-  set(FOLDERS ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/tests)
-  foreach(LINE ${LINES})
-    string(REPLACE " " ";" SOURCE_AND_UNIT ${LINE})
-    list(GET SOURCE_AND_UNIT 0 SOURCE)
-    list(GET SOURCE_AND_UNIT 1 UNIT)
-    set_source_files_properties(${PROJECT_SOURCE_DIR}/${SOURCE} DIRECTORY ${FOLDERS} PROPERTIES UNITY_GROUP ${UNIT})
-  endforeach()
-  foreach(FOLDER ${FOLDERS})
-    get_property(TARGETS DIRECTORY ${FOLDER} PROPERTY BUILDSYSTEM_TARGETS)
-    set_target_properties(${TARGETS} PROPERTIES UNITY_BUILD_MODE GROUP)
-  endforeach()
-endfunction()
-
 # sanitised_shards(ROOM): the tests of a room, every TEST_SHARDS-th in one process.
 function(sanitised_shards ROOM)
   foreach(SHARD RANGE 1 ${TEST_SHARDS})

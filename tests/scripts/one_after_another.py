@@ -1,6 +1,6 @@
-"""One command of scripts/ with one set of words after another, in this process: a new interpreter for each would take a tenth of
-a second, and the tests of bad input give thousands of them. Words: the command; standard input: a list of lists of words, in
-JSON. Prints a list of [exit code, what was said on stderr]."""
+"""One command of scripts/ with one set of words after another, in this process: a new interpreter for each would take a tenth
+of a second, and the tests of bad input give a thousand of them. Words: the command; standard input: a list of lists of words,
+in JSON. Prints a list of [exit code, what was said on stderr]."""
 import json
 import os
 import runpy

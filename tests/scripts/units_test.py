@@ -1,4 +1,4 @@
-"""Sources that are compiled as one with the sanitisers keep no name to themselves that another of them,
+"""Sources that are compiled as one keep no name to themselves that another of them,
 or its headers, has too."""
 import pathlib
 import subprocess
@@ -12,7 +12,7 @@ OWN = "namespace cleave {{\nnamespace {{\n{}\n}}  // namespace\n}}  // namespace
 
 def units_of(root, size=8):
     """{source: unit}"""
-    text = subprocess.run([sys.executable, str(ROOT / "tests/sanitised/units.py"), str(root), str(size)],
+    text = subprocess.run([sys.executable, str(ROOT / "tests/units.py"), str(root), str(size)],
                           capture_output=True, text=True, check=True).stdout
     lines = [line.split() for line in text.splitlines()]
     return dict(lines), [source for source, _ in lines]

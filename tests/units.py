@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Which sources are compiled as one with the sanitisers (CMAKE_UNITY_BUILD).
+"""Which sources are compiled as one (units.cmake).
 
 usage: units.py ROOT SIZE
 
