@@ -10,9 +10,9 @@ from synthetic import ROOT, SCRIPTS, run_script, write_manifest
 from cleave_scripts.documents import (accuracy, campaigns, cuts, friction, hidden, large, markers, modelled_cost, paper_claims,
                                       paper_table, peers, sets, speed, stability, worth)
 from cleave_scripts.documents.stored import NoResults, Stored
-from cleave_scripts.measurements import (coulomb_beside_siconos, elimination_orders, extremes_steps, friction_bounds,
-                                         friction_cost, friction_forms, large_scenes, objectives, partition_worth, peer_times,
-                                         running_simulation)
+from cleave_scripts.measurements import (builds, coulomb_beside_siconos, elimination_orders, extremes_steps,
+                                         friction_bounds, friction_cost, friction_forms, large_scenes, objectives,
+                                         partition_worth, peer_times, running_simulation)
 from cleave_scripts.measurements.reference_stages import STAGES
 from cleave_scripts.results.errors import ResultError
 from cleave_scripts.table import text
@@ -73,7 +73,7 @@ class CheckoutTest(unittest.TestCase):
                    "friction_bounds.csv": set(friction_bounds.COLUMNS), "friction_forms.csv": set(friction_forms.COLUMNS),
                    "coulomb_peers.csv": set(coulomb_beside_siconos.COLUMNS),
                    "partition_objectives.csv": set(objectives.COLUMNS),
-                   "elimination_orders.csv": set(elimination_orders.COLUMNS),
+                   "elimination_orders.csv": set(elimination_orders.COLUMNS), "compare_builds.csv": set(builds.COLUMNS),
                    "partition_worth.csv": set(partition_worth.COLUMNS), "peer_times.csv": set(peer_times.COLUMNS)}
         for command in ("two_threads", "modelled_workers", "busy_machine", "idle_cost", "cold_starts", "karger",
                         "partition_over_time", "ablation"):

@@ -94,6 +94,9 @@ SETS = {
         "partitioners and refiners, METIS and SCOTCH among them, on recorded steps and synthetic piles",
         "scripts/benchmark_partitioners"),
     "two_threads.csv": ("recorded steps with one and with two threads, in turn", "scripts/two_threads"),
+    "compare_builds.csv": (
+        "the same steps by the last build whose solver was serial and by today's, in turn, one thread",
+        "scripts/compare_builds"),
     "modelled_workers.csv": (
         "recorded steps with one and with two threads, in turn, and what the model of the first says",
         "scripts/modelled_workers"),

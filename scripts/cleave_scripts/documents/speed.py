@@ -4,7 +4,8 @@ import math
 import statistics
 
 from cleave_scripts.documents.stored import need
-from cleave_scripts.measurements import dense_ratios, model_ratios, modelled_times, solver_ratios, thread_times
+from cleave_scripts.measurements import builds, dense_ratios, model_ratios, modelled_times, solver_ratios, thread_times
+from cleave_scripts.measurements.accuracy import threads_in_words
 from cleave_scripts.results.names import title
 from cleave_scripts.results.paper import BEST, SCENES
 from cleave_scripts.table import text
@@ -12,6 +13,7 @@ from cleave_scripts.table import text
 THREADS = ("two_threads.csv", "scripts/two_threads")
 MODELLED = ("modelled_workers.csv", "scripts/modelled_workers")
 COLD = ("cold_starts.csv", "scripts/cold_starts")
+BEFORE = ("compare_builds.csv", "scripts/compare_builds")
 BENCHMARK = ("solver_benchmark.json", "scripts/benchmark_solvers")
 DENSE = ("dense_benchmark.json", "scripts/benchmark_dense")
 BUSY, IDLE = ("busy_machine.csv", "scripts/busy_machine"), ("idle_cost.csv", "scripts/idle_cost")
@@ -114,6 +116,15 @@ def idle_cost(stored):
     return f"On an idle machine solves on two threads take {told} (medians; `{IDLE[1]}`; {stored.origin(IDLE[0])})."
 
 
+def compare_builds(stored):
+    rows = need(stored.table(*BEFORE), "steps of two builds")
+    earlier, _ = builds.commits(rows)
+    threads = threads_in_words(tuple(sorted({row["threads"] for row in rows})))
+    return (f"One step from zero impulses on {threads} by commit {earlier}, the last whose solver "
+            f"was serial but for parts, and by this solver ({stored.origin(BEFORE[0])}; `{BEFORE[1]}`): "
+            f"{builds.summary(builds.changes(rows))}.\n\n{builds.markdown(rows)}")
+
+
 def cold_starts(stored):
     rows = [row for row in need(stored.table(*COLD), "cold starts") if int(row["rows"]) >= COLD_ROWS]
     need(rows, f"at least {COLD_ROWS} rows")
@@ -153,6 +164,6 @@ def speed_accuracy(stored):
             text.table(["sweeps", "ms", f"of the time of `{solver}`", "median residual, m/s"], shown))
 
 
-BLOCKS = {"two_threads": two_threads, "solver_benchmark": solver_benchmark, "cold_starts": cold_starts,
-          "speed_accuracy": speed_accuracy, "dense": dense, "busy_machine": busy_machine, "idle_cost": idle_cost,
-          "model": model, "modelled_workers": modelled_workers}
+BLOCKS = {"two_threads": two_threads, "compare_builds": compare_builds, "solver_benchmark": solver_benchmark,
+          "cold_starts": cold_starts, "speed_accuracy": speed_accuracy, "dense": dense, "busy_machine": busy_machine,
+          "idle_cost": idle_cost, "model": model, "modelled_workers": modelled_workers}

@@ -47,6 +47,7 @@ STAGES = (
     Stage("partition_objectives", ("partition_objectives", "--out", "{out}"), 6,
           files=(("partition_objectives.csv", "partition_objectives.csv"),)),
     Stage("two_threads", ("two_threads", "--out", "{out}"), 50, files=(("two_threads.csv", "two_threads.csv"),)),
+    Stage("compare_builds", ("compare_builds", "--out", "{out}"), 11, files=(("compare_builds.csv", "compare_builds.csv"),)),
     Stage("modelled_workers", ("modelled_workers", "--out", "{out}"), 5,
           files=(("modelled_workers.csv", "modelled_workers.csv"),)),
     Stage("running_simulation", ("running_simulation", "--out", "{out}"), 3,
