@@ -63,8 +63,7 @@ class Scratch:
 
     def run_program(self, words, **options):
         environment = dict(os.environ, CLEAVE_PROGRAM=str(self.program)) | options.pop("env", {})
-        options = {"stdout": subprocess.PIPE, "timeout": 300, **({} if "input" in options else {"stdin": subprocess.DEVNULL}),
-                   **options}
+        options = {"input": b"", "stdout": subprocess.PIPE, "timeout": 300, **options}
         return subprocess.run(words, cwd=self.names["empty"], env=environment, stderr=subprocess.PIPE, check=False, **options)
 
     def run_one_after_another(self, command, many):

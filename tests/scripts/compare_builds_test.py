@@ -117,6 +117,10 @@ class EarlierBuildTest(unittest.TestCase):
                     program = build_earlier(commit, place)
                     said = subprocess.run(["sh", program], check=True, capture_output=True, text=True).stdout
                     self.assertEqual(said, f"{prints} --preset release --target cleave\n")
+                # One that came after the clone, and a name that means another commit there.
+                later = self.commit(checkout, "later")
+                for commit, prints in ((later, "later"), (first, "first"), ("HEAD~1", "second")):
+                    self.assertIn(prints, build_earlier(commit, place).read_text())
 
 
 if __name__ == "__main__":

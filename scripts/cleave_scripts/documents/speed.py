@@ -120,9 +120,9 @@ def compare_builds(stored):
     rows = need(stored.table(*BEFORE), "steps of two builds")
     earlier, _ = builds.commits(rows)
     threads = threads_in_words(tuple(sorted({row["threads"] for row in rows})))
-    return (f"One step from zero impulses on {threads} by commit {earlier}, the last whose solver "
-            f"was serial but for parts, and by this solver ({stored.origin(BEFORE[0])}; `{BEFORE[1]}`): "
-            f"{builds.summary(builds.changes(rows))}.\n\n{builds.markdown(rows)}")
+    serial = ", the last whose solver was serial but for parts," if builds.SERIAL.startswith(earlier) else ""
+    return (f"Steps from zero impulses on {threads} by commit {earlier}{serial} and by this solver "
+            f"({stored.origin(BEFORE[0])}; `{BEFORE[1]}`): {builds.summary(builds.changes(rows))}.\n\n{builds.markdown(rows)}")
 
 
 def cold_starts(stored):

@@ -10,7 +10,7 @@ import statistics
 from cleave_scripts.results.rows import group
 from cleave_scripts.table import text
 
-EARLIER, THIS = BUILDS = ("earlier", "this")
+BUILDS = ("earlier", "this")
 # The last commit whose solver was serial but for the factorisation of parts.
 SERIAL = "d45a41a49276db2267dc409d03556f1340693042"
 SOLVERS = ("exact", "schur", "pivot:schur-bodies")
@@ -41,9 +41,14 @@ def _shortest_ms(rows):
     return min(float(row["t_s_ms"]) for row in rows) if all(row["status"] == "ok" for row in rows) else math.nan
 
 
+def _times_ms(of_step):
+    """One step by each of BUILDS."""
+    by_build = group(of_step, "build")
+    return [_shortest_ms(by_build[build,]) for build in BUILDS]
+
+
 def _change(key, rows):
-    times = [[_shortest_ms(of_step.get((build,), ())) for build in BUILDS]
-             for of_step in (group(of_step, "build") for of_step in group(rows, "step").values())]
+    times = [_times_ms(of_step) for of_step in group(rows, "step").values()]
     solved = [pair for pair in times if not any(map(math.isnan, pair))]
     means = map(statistics.fmean, zip(*solved)) if solved else (math.nan, math.nan)
     return Change(key, len(times), *means, tuple(sum(map(math.isnan, of_build)) for of_build in zip(*times)))
@@ -79,5 +84,5 @@ def markdown(rows):
 
 
 def _not_solved(change):
-    told = zip(change.failed, ("the earlier", "this"))
-    return ", ".join(f"{count} by {build} build" for count, build in told if count) or "-"
+    return ", ".join(f"{count} by {build} build" for count, build in zip(change.failed, ("the earlier", "this"))
+                     if count) or "-"

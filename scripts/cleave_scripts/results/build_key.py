@@ -11,6 +11,14 @@ BUILD = ("git_hash", "git_dirty", "compiler", "flags", "build_type")
 MACHINE = ("cpu_model", "cores")
 
 
+def version_of(program):
+    """The line with which a program says what it is."""
+    done = subprocess.run([program, "--version"], capture_output=True, text=True, errors="replace", check=False)
+    if done.returncode != 0:
+        raise ResultError(f"{program} --version stopped with exit code {done.returncode}")
+    return done.stdout.splitlines()[0]
+
+
 def build_key(program):
     """{name: value} of BUILD and MACHINE."""
     command = [str(program), "run", "--scene", "chain_drop", "--out", "-", "--print-key"]

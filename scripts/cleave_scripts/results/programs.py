@@ -23,29 +23,31 @@ def find_program(*targets, about, check=lambda program: None):
     about: what is said of the work before it begins, such as how long it takes. check(program) refuses options that only the
     program can judge, before anything else is said where that is possible.
     """
-    program = _given_program()
+    program = given_program("CLEAVE_PROGRAM")
     if program:
         check(program)
         say(about)
         return program
     say(about)
-    program = _build(("cleave", *targets))
+    program = build_program(("cleave", *targets))
     check(program)
     return program
 
 
-def _given_program():
-    given = os.environ.get("CLEAVE_PROGRAM")
+def given_program(variable):
+    """Path of the program that a variable of the environment names; None where it is not set."""
+    given = os.environ.get(variable)
     if given and not (os.path.isfile(given) and os.access(given, os.X_OK)):
-        raise ResultError(f"CLEAVE_PROGRAM is '{given}', which cannot be run")
+        raise ResultError(f"{variable} is '{given}', which cannot be run")
     return pathlib.Path(given).resolve() if given else None
 
 
-def _build(targets):
+def build_program(targets, root=ROOT):
+    """Path of cleave, built with the targets in the checkout root by its own set-up."""
     chosen = [word for target in targets for word in ("--target", target)]
-    if subprocess.run([ROOT / "scripts" / "setup", "--preset", "release", *chosen], check=False).returncode != 0:
+    if subprocess.run([root / "scripts" / "setup", "--preset", "release", *chosen], check=False).returncode != 0:
         raise AlreadyTold
-    return ROOT / "build" / "release" / "cleave"
+    return root / "build" / "release" / "cleave"
 
 
 def find_peer_program(name, variable):
