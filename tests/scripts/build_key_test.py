@@ -6,7 +6,7 @@ import unittest
 
 import synthetic  # noqa: F401  (finds the modules of scripts/)
 
-from cleave_scripts.results.build_key import build_key, difference
+from cleave_scripts.results.build_key import build_key, difference, version_of
 from cleave_scripts.results.errors import ResultError
 
 KEY = {"git_hash": "a" * 40, "git_dirty": "false", "compiler": "G 1", "flags": "-O3", "build_type": "Release",
@@ -37,12 +37,18 @@ class DifferenceTest(unittest.TestCase):
 
 class ProgramTest(unittest.TestCase):
 
-    def key_of(self, text):
+    def key_of(self, text, asked=build_key):
         with tempfile.TemporaryDirectory() as scratch:
             program = pathlib.Path(scratch) / "cleave"
             program.write_text(f"#!/bin/sh\n{text}\n")
             program.chmod(0o755)
-            return build_key(program)
+            return asked(program)
+
+    def test_a_version_is_the_first_line_of_what_a_program_says(self):
+        self.assertEqual(self.key_of("echo one; echo two", version_of), "one")
+        self.assertEqual(self.key_of("", version_of), "")
+        with self.assertRaisesRegex(ResultError, "--version stopped with exit code 4"):
+            self.key_of("exit 4", version_of)
 
     def test_a_program_says_its_build_and_machine(self):
         self.assertEqual(self.key_of(f"echo '{json.dumps(KEY | {'run_id': '1'})}'"), KEY)

@@ -16,7 +16,7 @@ def version_of(program):
     done = subprocess.run([program, "--version"], capture_output=True, text=True, errors="replace", check=False)
     if done.returncode != 0:
         raise ResultError(f"{program} --version stopped with exit code {done.returncode}")
-    return done.stdout.splitlines()[0]
+    return done.stdout.partition("\n")[0]
 
 
 def build_key(program):
