@@ -65,7 +65,9 @@ void SolveState::update_shift() {
   put_law_into(slack, [this](std::size_t k, double of_law) { shift[k] = of_law; });
 }
 
+// Without the old shift, whose rounding would stay.
 void SolveState::update_velocity_and_shift() {
+  std::ranges::fill(shift, 0.0);
   update_velocity();
   update_shift();
 }

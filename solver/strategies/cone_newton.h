@@ -18,13 +18,16 @@
 // exact where the rows of a contact have one compliance.
 //
 // Under Coulomb's law w_n + mu |w_t| takes the place of w_n, with the change of mu |w_t| along the step
-// (step_shift.h). Its steps are halved until the energy sum_r d_r F_r^2 falls (of a contact its largest F).
-// On piles that are not stiff it mostly converges from the impulses of the step before, on others from where
-// the interior point stalls.
+// (step_shift.h), which is found the more exactly the faster the steps converge. They are halved until the
+// energy sum_r d_r F_r^2 (of a contact its largest F) is below the greatest of the last few: where every step
+// has to lower it, many stay short. On piles and towers that are not stiff it mostly converges from the
+// impulses of the step before, on others from where the interior point stalls.
 //
 // Source: Qi and Sun, "A nonsmooth version of Newton's method", Math. Program. 58, 1993; the derivative:
 // Fukushima, Luo and Tseng, "Smoothing functions for second-order-cone complementarity problems", SIAM J.
-// Optim. 12, 2002.
+// Optim. 12, 2002; the energy: Grippo, Lampariello and Lucidi, "A nonmonotone line search technique for
+// Newton's method", SIAM J. Numer. Anal. 23, 1986; how exactly: Eisenstat and Walker, "Choosing the forcing
+// terms in an inexact Newton method", SIAM J. Sci. Comput. 17, 1996.
 #pragma once
 
 #include <vector>
@@ -48,6 +51,8 @@ class ConeNewton {
  private:
   bool find_step(SolveState& state);
   double take_step(SolveState& state);
+  double energy_to_beat() const;
+  double shift_accuracy() const;
   ImpulseSet::Misses misses(SolveState& state);
   bool falls() const;
   void linearize_rows(SolveState& state, int first, int last) const;
@@ -60,6 +65,7 @@ class ConeNewton {
   std::vector<double> energies_;                  // before every step and after the last
   std::vector<double> chunk_energy_;              // scratch
   std::vector<double> wanted_;                    // (m) on the rows of cones, w - d F / theta
+  std::vector<char> slides_;                      // (cones) under Coulomb's law
   std::vector<double> impulse_before_, slack_before_, best_impulse_;  // (m)
 };
 

@@ -43,8 +43,9 @@ bool InteriorEnd::solve_rows(SolveState& state, const InteriorIterate& iterate, 
   return state.settle(tolerance, settling) && state.residual() <= state.step->exact_limit_m_per_s();
 }
 
+// Under Coulomb's law up to the target itself: digits beyond it are a step that takes a thirteenth of all.
 bool InteriorEnd::attempt(SolveState& state, const InteriorIterate& iterate) {
-  const double tolerance = constants_.polish_accuracy * state.target_m_per_s();
+  const double tolerance = (has_coulomb_ ? 1 : constants_.polish_accuracy) * state.target_m_per_s();
   kept_impulse_ = state.impulse;
   if (has_cones_ ? solve_cones(state, tolerance) : solve_rows(state, iterate, tolerance)) return true;
   state.load(kept_impulse_);

@@ -34,14 +34,14 @@ namespace {
 constexpr double kShiftAccuracy = 0.1;
 constexpr int kMostShifts = 8;
 
-// Further attempts at the end under Coulomb's law: at this share of the error of the one before; after so
-// many iterations without progress, and again where the error is this share of the last attempt's.
+// Further attempts at the end under Coulomb's law: at this share of the error of the one before; where the
+// error has not fallen to this share in so many iterations, and again where it is this share of the last
+// attempt's. After so many the iteration ends. Of 300 piles of 18 boxes with cfm 1e-5 to 1e-7 234 are solved
+// so; where only iterations that lower the error not at all were counted, 216 were, with a quarter more
+// factorisations, since an error may also creep.
 constexpr double kNextLawPolish = 0.1;
-constexpr int kStalledIterations = 5;
-constexpr double kNextStalledPolish = 0.5;
-// So many without progress, and the iteration ends. Of 490 steps of Rock Pile and 49 of Large Rock Pile those
-// that came right had at most ten.
-constexpr int kHopelessIterations = 20;
+constexpr double kLawProgress = 0.5;
+constexpr int kStalledIterations = 5, kHopelessIterations = 40;
 
 // With cones: so many steps in a row below this length, and the iteration begins anew. It does so, as where
 // it ended without an answer, with products of so many times the energy and this share of the way to the
@@ -68,7 +68,7 @@ class InteriorPoint : public Strategy {
   double step_fraction() const { return is_careful_ ? kCarefulFraction : constants_.step_fraction; }
   Progress watch(const SolveState& state, double error);
   bool is_stalled() const;
-  bool is_hopeless() const { return has_coulomb_ && since_best_ >= kHopelessIterations; }
+  bool is_hopeless() const { return has_coulomb_ && since_progress_ >= kHopelessIterations; }
   bool finish(SolveState& state);
   void step(SolveState& state, double error);
   void adapt_delta(double rounding);
@@ -81,6 +81,8 @@ class InteriorPoint : public Strategy {
   double last_polish_ = 0;  // the error of the last attempt at the end
   double best_error_ = 0, last_step_ = 1, polish_below_ = 0;
   int since_best_ = 0, grown_ = 0, raises_ = 0;
+  double progress_to_ = 0;  // the error that the last progress under Coulomb's law led to
+  int since_progress_ = 0;  // iterations
   double delta_ = 0, least_delta_ = 0, best_delta_ = 0;
   bool has_coulomb_ = false, has_convex_cones_ = false;
   bool is_careful_ = false;  // the iteration has begun anew
@@ -134,6 +136,8 @@ void InteriorPoint::step(SolveState& state, double error) {
 // impulses of the step before may be better than the first iterates, which are none the worse for it.
 InteriorPoint::Progress InteriorPoint::watch(const SolveState& state, double error) {
   const bool is_start = std::exchange(is_start_, false);
+  ++since_progress_;
+  if (error < kLawProgress * progress_to_) progress_to_ = error, since_progress_ = 0;
   if (error < best_error_) {
     best_error_ = error;
     best_is_start_ = is_start && !state.step->set().cones().empty();
@@ -161,17 +165,16 @@ void InteriorPoint::begin(SolveState& state) {
   best_delta_ = delta_;
   least_delta_ = constants_.least_delta;
   rounds_ = least < constants_.most_delta;
-  best_error_ = std::numeric_limits<double>::infinity();
-  since_best_ = grown_ = raises_ = short_steps_ = 0;
+  best_error_ = progress_to_ = std::numeric_limits<double>::infinity();
+  since_best_ = since_progress_ = grown_ = raises_ = short_steps_ = 0;
   is_start_ = true;
   last_polish_ = std::numeric_limits<double>::infinity();
 }
 
-// Under Coulomb's law: no progress since iterations, and since the last attempt at the end so much that
-// another may go elsewhere.
+// Under Coulomb's law: no progress for iterations, and since the last attempt at the end so much that another
+// may go elsewhere.
 bool InteriorPoint::is_stalled() const {
-  return has_coulomb_ && since_best_ == kStalledIterations &&
-         best_error_ <= kNextStalledPolish * last_polish_;
+  return has_coulomb_ && since_progress_ >= kStalledIterations && best_error_ <= kLawProgress * last_polish_;
 }
 
 bool InteriorPoint::run(SolveState& state) {

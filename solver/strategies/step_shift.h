@@ -4,10 +4,11 @@
 //
 //     ds = mu u . dw_t,   u = w_t / |w_t|,
 //
-// with the dw_t of the same step, which is what makes the derivative unsymmetric. For a given ds the step is
-// that of a cone, one back-substitution with the factor at hand, and dw_t is affine in ds. So one unknown a
-// contact remains, ds = r + A ds with A known by back-substitutions alone; coulomb_shift.h's acceleration is
-// GMRES there.
+// with the dw_t of the same step, which is what makes the derivative unsymmetric. A contact that sticks is to
+// come to w_t = 0, so that its change is -s, and one that opens has none that matters. For a given ds of
+// those that slide the step is that of a cone, one back-substitution with the factor at hand, and dw_t is
+// affine in ds. So one unknown a sliding contact remains, ds = r + A ds with A known by back-substitutions
+// alone; coulomb_shift.h's acceleration is GMRES there.
 #pragma once
 
 #include <span>
@@ -21,8 +22,10 @@ namespace cleave {
 class StepShift {
  public:
   // Of the step from slacks slack_before (m, m/s), with state.slack where the factored step begins; the
-  // change is zero.
-  void begin(SolveState& state, std::span<const double> slack_before);
+  // change is zero. slides: (cones) 1 where a contact does. accuracy: share of what the change is off at
+  // first to which it is to be matched.
+  void begin(SolveState& state, std::span<const double> slack_before, std::span<const char> slides,
+             double accuracy);
 
   // Of the next back-substitution: state.f_r <- f_r - ds on the normals.
   void add_to_right_hand_side(SolveState& state) const;
@@ -32,20 +35,22 @@ class StepShift {
   bool is_matched(SolveState& state);
 
  private:
-  // mu u . dw_t of a contact as change + row . (dv of its two bodies) + compliance . dlambda_t; zero where
-  // the law is not Coulomb's or no tangent moves, as the contact sticks.
+  // mu u . dw_t of a contact as change + row . (dv of its two bodies) + compliance . dlambda_t.
   struct Contact {
+    const FrictionCone* cone = nullptr;
     double row[12] = {};
     double change = 0;
     double compliance[2] = {};
   };
-  static Contact linearize(const SolveState& state, const FrictionCone& cone,
-                           std::span<const double> slack_before);
+  static void linearize(const SolveState& state, std::span<const double> slack_before, Contact& contact);
+  template <class Task>
+  void over_contacts(SolveState& state, const Task& task);
 
   CoulombShift shift_;
+  double accuracy_ = 0;
   double first_apart_ = -1;        // m/s; negative before the first back-substitution
-  std::vector<Contact> contacts_;  // (cones)
-  std::vector<double> wanted_;     // (cones)
+  std::vector<Contact> contacts_;  // that slide
+  std::vector<double> wanted_;     // of each
 };
 
 }  // namespace cleave
