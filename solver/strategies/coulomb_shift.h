@@ -14,6 +14,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "solver/friction_cone.h"
 
@@ -27,9 +28,7 @@ class CoulombShift {
   void restart() { used_ = 0; }
 
   // (cones) ds, m/s.
-  std::span<const double> change() const {
-    return {change_.data(), static_cast<std::size_t>(change_.size())};
-  }
+  std::span<const double> change() const { return change_; }
 
   // f_r of the cones' normal rows -= ds.
   void subtract_change(std::span<const FrictionCone> cones, std::span<double> f_r) const;
@@ -41,9 +40,12 @@ class CoulombShift {
  private:
   static constexpr int kMemory = 8;
 
-  Eigen::VectorXd change_, apart_, last_change_, last_apart_;
-  Eigen::MatrixXd changes_,
-      aparts_;  // (cones, kMemory) differences of consecutive ones, the first used_ columns
+  void add_difference();
+  void extrapolate(int columns);
+
+  // (cones); these keep their memory where Eigen's would not, as the number of cones changes.
+  std::vector<double> change_, apart_, last_change_, last_apart_;
+  std::vector<double> changes_, aparts_;  // (cones, kMemory) differences of consecutive ones, by columns
   Eigen::Matrix<double, kMemory, kMemory> gram_;  // aparts_^T aparts_
   int used_ = 0;
 };

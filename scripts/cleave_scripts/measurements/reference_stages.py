@@ -67,7 +67,7 @@ STAGES = (
     Stage("friction_models", ("friction_models", "--out", "{out}"), 40,
           files=tuple((file, file) for file in ("friction_motion.csv", "friction_velocities.csv", "friction_bounds.csv"))),
     Stage("friction_forms", ("friction_forms", "--out", "{out}"), 1, files=(("friction_forms.csv", "friction_forms.csv"),)),
-    Stage("friction_cost", ("friction_cost", "--out", "{out}"), 15, files=(("friction_cost.csv", "friction_cost.csv"),)),
+    Stage("friction_cost", ("friction_cost", "--out", "{out}"), 20, files=(("friction_cost.csv", "friction_cost.csv"),)),
     Stage("coulomb_peers", ("coulomb_peers", "--out", "{out}"), 10, files=(("coulomb_peers.csv", "coulomb_peers.csv"),)),
     Stage("peers", ("peers", "--out", "{out}"), 10, files=(("peer_times.csv", "peer_times.csv"),)),
     Stage("campaign_costs", ("campaign_costs", "--paper", "{report}/paper", "--out", "{out}"), 12,
