@@ -75,9 +75,9 @@ std::span<const double> ImpulseSet::in_rows(std::span<const double> x, std::vect
   return scratch;
 }
 
-std::span<const FrictionCone> ImpulseSet::cones_of(int first, int last) const {
-  const auto begin = std::ranges::lower_bound(cones_, first, {}, &FrictionCone::first_row);
-  return {begin, std::ranges::lower_bound(begin, cones_.end(), last, {}, &FrictionCone::first_row)};
+std::span<const FrictionCone> cones_between(std::span<const FrictionCone> cones, int first, int last) {
+  const auto begin = std::ranges::lower_bound(cones, first, {}, &FrictionCone::first_row);
+  return {begin, std::ranges::lower_bound(begin, cones.end(), last, {}, &FrictionCone::first_row)};
 }
 
 void ImpulseSet::project(std::span<double> impulse) const {

@@ -28,6 +28,9 @@
 
 namespace cleave {
 
+// Of cones, ascending, those whose normal is one of the rows first .. last - 1.
+std::span<const FrictionCone> cones_between(std::span<const FrictionCone> cones, int first, int last);
+
 class ImpulseSet {
  public:
   // problem must outlive this object.
@@ -39,7 +42,9 @@ class ImpulseSet {
   // Of every contact whose set is no box, ascending.
   std::span<const FrictionCone> cones() const { return cones_; }
   // Those whose normal is one of the rows first .. last - 1.
-  std::span<const FrictionCone> cones_of(int first, int last) const;
+  std::span<const FrictionCone> cones_of(int first, int last) const {
+    return cones_between(cones_, first, last);
+  }
   // visit(first, last) for the runs of rows that belong to no cone.
   template <class Visit>
   void visit_intervals(int first, int last, const Visit& visit) const;

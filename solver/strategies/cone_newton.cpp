@@ -200,7 +200,7 @@ double ConeNewton::first_residual(double least_compliance) {
 
 double ConeNewton::run(SolveState& state, double target) {
   has_coulomb_ = state.step->set().has_coulomb();
-  state.update_velocity_and_shift();
+  if (has_coulomb_) state.update_velocity_and_shift();
   const ImpulseSet::Misses start = misses(state);
   double least = start.largest;
   best_impulse_ = state.impulse;

@@ -37,20 +37,19 @@ class StepShift {
  private:
   // mu u . dw_t of a contact as change + row . (dv of its two bodies) + compliance . dlambda_t.
   struct Contact {
-    const FrictionCone* cone = nullptr;
     double row[12] = {};
     double change = 0;
     double compliance[2] = {};
   };
-  static void linearize(const SolveState& state, std::span<const double> slack_before, Contact& contact);
-  template <class Task>
-  void over_contacts(SolveState& state, const Task& task);
+  static Contact linearize(const SolveState& state, const FrictionCone& cone,
+                           std::span<const double> slack_before);
 
   CoulombShift shift_;
   double accuracy_ = 0;
-  double first_apart_ = -1;        // m/s; negative before the first back-substitution
-  std::vector<Contact> contacts_;  // that slide
-  std::vector<double> wanted_;     // of each
+  double first_apart_ = -1;  // m/s; negative before the first back-substitution
+  std::vector<FrictionCone> sliding_;
+  std::vector<Contact> contacts_;  // of each
+  std::vector<double> wanted_;     // of each, m/s
 };
 
 }  // namespace cleave
