@@ -225,8 +225,8 @@ TEST_P(ConeSolverTest, CoulombsLawIsExactWhereTheIterationStalls) {
   }
 }
 
-// Ten of these are lost where every step of the Newton method must lower the energy, and where it is not tried
-// again while the error creeps.
+// Ten of these are lost where every step of the Newton method must lower the energy, and where it is not
+// tried again while the error creeps.
 TEST(CoulombsLawTest, MostHardPilesAreSolved) {
   constexpr int kMostLost = 6;  // 4 are, as rounding has it
   int lost = 0;
