@@ -97,6 +97,7 @@ bool Attempts::attempt(PreparedStep& step, Kernel& kernel, double delta, std::sp
   {
     StageTimer timer(state.tasks.clock(), Stage::predict);
     if (delta > 0) {
+      state.finish_analysis();  // which looks at the step
       proximal_.begin(step, warm_impulse, delta);
       step.prepare(proximal_.problem(), &state.tasks);
     }

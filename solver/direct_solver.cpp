@@ -42,6 +42,18 @@ std::unique_ptr<Kernel> make_kernel(const KernelRow& row, const Settings& settin
   return std::make_unique<CarriedFactor>(std::move(kernel));
 }
 
+// No analysis goes on after a solve that ends with an exception.
+class BackgroundGuard {
+ public:
+  explicit BackgroundGuard(ParallelTasks& tasks) : tasks_(tasks) {}
+  ~BackgroundGuard() { tasks_.cancel_background(); }
+  BackgroundGuard(const BackgroundGuard&) = delete;
+  BackgroundGuard& operator=(const BackgroundGuard&) = delete;
+
+ private:
+  ParallelTasks& tasks_;
+};
+
 class DirectSolver : public StepSolver {
  public:
   DirectSolver(std::string_view strategy, const KernelRow& kernel, const SolveOptions& options,
@@ -62,7 +74,8 @@ class DirectSolver : public StepSolver {
   SolveSummary do_solve(const StepProblem& problem, const Parts& parts, Solution& solution) override;
   void solve_in_memory(const StepProblem& problem, const Parts& parts, Solution& solution,
                        SolveSummary& summary);
-  void plan_analysis(const Parts& parts);
+  void prepare(const StepProblem& problem, const Parts& parts);
+  void analyze();
   bool run_attempts(SolveSummary& summary);
   void hand_over(Solution& solution);
   void describe_failure(const Solution& solution, SolveSummary& summary);
@@ -85,15 +98,21 @@ std::string DirectSolver::refuse_set(const StepProblem& problem) {
   return find_set_refusal("strategy", strategy_, problem, attempts_.takes());
 }
 
-// At once where it runs tasks of its own, else when a strategy has time for it. What the plan holds fits into
-// the function without memory of its own.
-void DirectSolver::plan_analysis(const Parts& parts) {
+void DirectSolver::analyze() {
+  const bool may_keep = state_.options.reuse_analysis || state_.options.session;
+  analysis_.analyze(*kernel_, step_, planned_parts_, may_keep, state_.tasks);
+}
+
+// The analysis goes on beside what follows, unless it runs tasks of its own. Its function fits into its place
+// without memory of its own.
+void DirectSolver::prepare(const StepProblem& problem, const Parts& parts) {
+  const StageTimer timer(clock_, Stage::analyze);
   planned_parts_ = parts;
-  state_.analysis = [this] {
-    const bool may_keep = state_.options.reuse_analysis || state_.options.session;
-    analysis_.analyze(*kernel_, step_, planned_parts_, may_keep, state_.tasks);
-  };
-  if (!kernel_->analyzes_as_a_task()) state_.analyze();
+  step_.bind(problem, &state_.tasks);
+  const bool goes_beside = kernel_->analyzes_as_a_task();
+  if (goes_beside) state_.tasks.begin_background([this] { analyze(); });
+  step_.compute();
+  if (!goes_beside) analyze();
 }
 
 // In a session once more where a carried factor has served and the answer is not within the limit.
@@ -125,18 +144,15 @@ void DirectSolver::solve_in_memory(const StepProblem& problem, const Parts& part
                                    SolveSummary& summary) {
   summary.kernel = kernel_name_;
   clock_.start();
-  {
-    StageTimer timer(clock_, Stage::analyze);
-    step_.prepare(problem, &state_.tasks);
-  }
   state_.last_changed_rows = std::exchange(state_.changed_rows, std::numeric_limits<int>::max());
   if (carried_ != nullptr) carried_->begin_step(state_.last_changed_rows);
-  plan_analysis(parts);
+  const BackgroundGuard guard(state_.tasks);
+  prepare(problem, parts);
   state_.part_of_body = parts.part_of_body;
   warm_impulse_ = solution.impulse;
   step_.set().to_axes(warm_impulse_);
   const bool solved = run_attempts(summary);
-  state_.analyze();  // where no strategy came to a factorisation
+  state_.finish_analysis();  // where no strategy came to a factorisation
   hand_over(solution);
   // Strategies that gave up may have come within the limit all the same.
   if (!solved && !(state_.residual() <= step_.exact_limit_m_per_s())) describe_failure(solution, summary);

@@ -1,5 +1,7 @@
 #include "solver/parallel_tasks.h"
 
+#include <utility>
+
 namespace cleave {
 
 void start_threads(int threads) {
@@ -13,5 +15,24 @@ void start_threads(int threads) {
   StageClock clock;
   ParallelTasks(clock, threads).run(Stage::analyze, threads, spin);
 }
+
+void ParallelTasks::begin_background(std::function<void()> work) {
+  if (threads() > 1) {
+    background_.work = std::move(work);
+    return team_.begin(background_);
+  }
+  const auto begin = StageClock::Clock::now();
+  work();
+  clock_.add_background(std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin).count());
+}
+
+void ParallelTasks::finish_background(Stage stage) {
+  if (threads() == 1) return clock_.join_background();
+  if (!background_.work) return;
+  const StageTimer timer(clock_, stage);
+  team_.finish(background_);
+}
+
+void ParallelTasks::cancel_background() { team_.cancel(background_); }
 
 }  // namespace cleave

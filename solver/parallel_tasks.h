@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -99,6 +100,14 @@ class ParallelTasks {
     if (counts) clock_.move(stage, other, other_ms);
   }
 
+  // Work that runs no tasks of its own, done on another thread beside the stages that follow; no two at once.
+  // On one thread it is done here and now.
+  void begin_background(std::function<void()> work);
+  // Nothing where there is none. The time it is waited for is that of a stage. Throws what it threw.
+  void finish_background(Stage stage);
+  // For one whose results nobody waits for any more: returns once it is not running.
+  void cancel_background();
+
   StageClock& clock() { return clock_; }
   int threads() const { return team_.threads(); }
   const std::atomic<bool>* stop() const { return stop_; }  // of the solve
@@ -170,6 +179,7 @@ class ParallelTasks {
 
   StageClock& clock_;
   WorkerTeam& team_;
+  BackgroundTask background_;
   const std::atomic<bool>* stop_;
   MemoryBudget memory_;
   std::vector<double> task_ms_;

@@ -26,35 +26,30 @@ void PreparedStep::run(std::span<const Chunk> chunks, const Task& task) const {
   for (const Chunk& chunk : chunks) task(chunk);
 }
 
-void PreparedStep::prepare(const StepProblem& problem, ParallelTasks* tasks) {
+void PreparedStep::bind(const StepProblem& problem, ParallelTasks* tasks) {
   ++preparations_;
   problem_ = &problem;
   tasks_ = tasks;
-  const int n = body_count(), m = row_count();
   list_groups();
+  set_.bind(problem);
+}
+
+void PreparedStep::compute() {
   list_sides();
-  cut_into_chunks(
-      static_cast<int>(groups_.size()), std::clamp((m + 15) / 16, kLeastChunkRows, kMostChunkRows),
-      [&](int g) { return groups_[g].row_count; }, group_chunks_);
-  cut_into_chunks(
-      n, kChunkBodies, [](int) { return 1; }, body_chunks_);
+  list_chunks();
+  const std::size_t n = body_count(), m = row_count();
   group_sums_.resize(12 * groups_.size());
-  inverse_mass_.resize(36 * static_cast<std::size_t>(n));
-  mass_jacobian_.resize(12 * static_cast<std::size_t>(m));
+  inverse_mass_.resize(36 * n);
+  mass_jacobian_.resize(12 * m);
   diagonal_.resize(m);
   inverse_diagonal_.resize(m);
   run(body_chunks_, [this](const Chunk& chunk) { prepare_bodies(chunk); });
   run(group_chunks_, [this](const Chunk& chunk) { prepare_rows(chunk); });
-  set_.bind(problem);
   turn_diagonal();
   level_diagonal();
-  least_relative_compliance_ = std::numeric_limits<double>::infinity();
-  for (int r = 0; r < m; ++r) {
-    inverse_diagonal_[r] = 1 / diagonal_[r];
-    least_relative_compliance_ = std::min(least_relative_compliance_, problem.compliance[r] / diagonal_[r]);
-  }
+  invert_diagonal();
   velocity_scale_ = 1;
-  for (double v : problem.free_velocity) velocity_scale_ = std::max(velocity_scale_, std::abs(v));
+  for (double v : problem_->free_velocity) velocity_scale_ = std::max(velocity_scale_, std::abs(v));
 }
 
 void PreparedStep::list_groups() {
@@ -73,6 +68,14 @@ void PreparedStep::list_sides() {
     return side % 2 == 0 ? g.body_a : g.body_b;
   };
   sort_into_buckets(static_cast<int>(2 * groups_.size()), body_count(), body_of_side, side_first_, sides_);
+}
+
+void PreparedStep::list_chunks() {
+  cut_into_chunks(
+      static_cast<int>(groups_.size()), std::clamp((row_count() + 15) / 16, kLeastChunkRows, kMostChunkRows),
+      [&](int g) { return groups_[g].row_count; }, group_chunks_);
+  cut_into_chunks(
+      body_count(), kChunkBodies, [](int) { return 1; }, body_chunks_);
 }
 
 void PreparedStep::prepare_bodies(const Chunk& chunk) {
@@ -126,6 +129,14 @@ void PreparedStep::level_diagonal() {
   for (const FrictionCone& cone : set_.cones()) {
     const auto rows = std::span(diagonal_).subspan(cone.first_row, cone.row_count);
     std::ranges::fill(rows, std::ranges::max(rows));
+  }
+}
+
+void PreparedStep::invert_diagonal() {
+  least_relative_compliance_ = std::numeric_limits<double>::infinity();
+  for (std::size_t r = 0; r < diagonal_.size(); ++r) {
+    inverse_diagonal_[r] = 1 / diagonal_[r];
+    least_relative_compliance_ = std::min(least_relative_compliance_, problem_->compliance[r] / diagonal_[r]);
   }
 }
 

@@ -35,7 +35,13 @@ class PreparedStep {
  public:
   // problem must outlive this object. Buffers are kept from one problem to the next. tasks: who works on this
   // and on the products below, until the next call; nullptr: the calling thread alone, with the same bytes.
-  void prepare(const StepProblem& problem, ParallelTasks* tasks = nullptr);
+  void prepare(const StepProblem& problem, ParallelTasks* tasks = nullptr) {
+    bind(problem, tasks);
+    compute();
+  }
+  // The two halves of it: the groups and the set, all that an analysis of the pattern looks at; and the rest.
+  void bind(const StepProblem& problem, ParallelTasks* tasks);
+  void compute();
 
   const StepProblem& problem() const { return *problem_; }
   int body_count() const { return problem_->body_count(); }
@@ -90,10 +96,12 @@ class PreparedStep {
  private:
   void list_groups();
   void list_sides();
+  void list_chunks();
   void prepare_bodies(const Chunk& chunk);
   void prepare_rows(const Chunk& chunk);
   void turn_diagonal();
   void level_diagonal();
+  void invert_diagonal();
   template <class Task>
   void run(std::span<const Chunk> chunks, const Task& task) const;
   void add_transpose(const double* rows, std::span<const double> x, std::span<const double> base,

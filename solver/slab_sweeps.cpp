@@ -218,12 +218,11 @@ void SlabSweeps::end_sweep(bool looks, int settled_rows) {
   is_settled_ = changed_rows_ <= settled_rows;
 }
 
-int SlabSweeps::run(int sweeps, int settled_rows, ParallelTasks& tasks, const std::function<void()>& beside) {
+int SlabSweeps::run(int sweeps, int settled_rows, ParallelTasks& tasks) {
   assert(sweeps > 0 && sweeps <= kMostSweeps);
   const int sets = slabs_.set_count(), tasks_of_sweep = slabs_.tasks_of_sweep();
   is_settled_ = false;
   tasks.run(Stage::predict, slabs_.graph(), [&](int task) {
-    if (task == kMostSweeps * tasks_of_sweep) return beside();
     const int sweep = task / tasks_of_sweep, set = task % tasks_of_sweep;
     if (sweep >= sweeps || is_settled_) return;
     const bool looks = (sweep + 1) % kSweepsOfALook == 0 || sweep == sweeps - 1;

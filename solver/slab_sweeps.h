@@ -13,7 +13,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -27,7 +26,7 @@ namespace cleave {
 
 class SlabSweeps {
  public:
-  static constexpr int kMostSweeps = 60;  // of one run, beside which the kernel is analysed
+  static constexpr int kMostSweeps = 60;  // of one run
   static constexpr int kSweepsOfALook = 5;
 
   // Of a problem without turned boxes, which must stay as it is for run().
@@ -37,10 +36,8 @@ class SlabSweeps {
   void take_in(std::span<const double> impulse, std::span<const double> v, ParallelTasks& tasks);
   // Sweeps, at most kMostSweeps. After every kSweepsOfALook of them, and after the last, rows that have come
   // to or left a bound since the look before, or take_in(), are counted; no more than settled_rows, and the
-  // run ends. Returns the last count. beside: one more task, for work that has nothing to do with the sweeps.
-  // Ends with Stopped where tasks say so.
-  int run(
-      int sweeps, int settled_rows, ParallelTasks& tasks, const std::function<void()>& beside = [] {});
+  // run ends. Returns the last count. Ends with Stopped where tasks say so.
+  int run(int sweeps, int settled_rows, ParallelTasks& tasks);
   // Impulses, those at a bound exactly there, and v to single precision.
   void give_out(std::span<double> impulse, std::span<double> v, ParallelTasks& tasks) const;
 

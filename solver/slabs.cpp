@@ -6,7 +6,6 @@ namespace cleave {
 namespace {
 
 constexpr int kSlabRows = 900;  // about so many in a slab: three microseconds of work
-constexpr double kLastPlace = 1 - 1e-9;
 
 }  // namespace
 
@@ -108,9 +107,8 @@ void Slabs::build_graph(int sweeps) {
     for (int task = begin; task < end; ++task) waits_.emplace_back(task, end);
     places_[end] = 0;
   }
-  places_.push_back(kLastPlace);
   graph_sweeps_ = 0;  // until it is built: a solver that found no memory may be asked again
-  graph_.build(sweeps * tasks_of_sweep() + 1, waits_, places_);
+  graph_.build(sweeps * tasks_of_sweep(), waits_, places_);
   graph_count_ = count_;
   graph_sweeps_ = sweeps;
 }

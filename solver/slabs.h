@@ -19,7 +19,7 @@ namespace cleave {
 class Slabs {
  public:
   // Cuts the bodies, and makes the graph of so many sweeps: tasks sweep * tasks_of_sweep() + set, the last of
-  // a sweep being its end; and one more that waits for none.
+  // a sweep being its end.
   void cut(const PreparedStep& step, int sweeps);
 
   int count() const { return count_; }

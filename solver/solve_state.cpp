@@ -1,11 +1,9 @@
 #include "solver/solve_state.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <utility>
 
 #include "solver/cone.h"
 
@@ -77,16 +75,9 @@ void SolveState::load(const std::vector<double>& impulses) {
   update_velocity_and_shift();
 }
 
-void SolveState::analyze() {
-  if (!analysis) return;
-  const auto begin = StageClock::Clock::now();
-  std::exchange(analysis, nullptr)();
-  analysis_ms = std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin).count();
-}
-
 bool SolveState::factor(const RowWork& before) {
   check_stop(options.stop);
-  analyze();
+  finish_analysis();
   ++summary->factorizations;
   const bool factored = kernel->factor({weight, blocks}, tasks, before);
   summary->factor_mflop_done += kernel->done_mflop();

@@ -65,9 +65,8 @@ struct SolveState {
   // non-positive pivot.
   bool factor(const RowWork& before = {});
 
-  // The kernel's analysis, where it is still to be done: a strategy that has other work first may do it
-  // beside that, as one of its tasks. factor() does it otherwise.
-  void analyze();
+  // Ends the kernel's analysis, which goes on beside the first work of a strategy. factor() does so itself.
+  void finish_analysis() { tasks.finish_background(Stage::analyze); }
 
   // dv and dlambda from f_v and f_r by the kernel; f_r of cones is left along their bases.
   void solve(const RowsAround& around = {});
@@ -146,8 +145,6 @@ struct SolveState {
   ParallelTasks tasks;
   const PreparedStep* step = nullptr;
   Kernel* kernel = nullptr;
-  std::function<void()> analysis;  // empty once it is done
-  double analysis_ms = 0;          // what it took, once it is done
   SolveSummary* summary = nullptr;
 
   std::vector<double> impulse, velocity, slack;  // (m), (n, 6), (m)

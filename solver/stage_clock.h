@@ -1,23 +1,14 @@
 // The clock of a solve: times of its named stages, and what the same tasks would take on p workers.
-//
-// A parallel stage is a set of tasks (one per subsystem, branch or tile), independent or of a graph. Their
-// schedule on p workers (task_schedule.h) gives the makespan of the stage; a solve on p workers is then
-// modelled as the sum of the makespans of its parallel stages plus all serial time. On more than one worker
-// every task is charged what an empty one costs, less what of that its one-thread time contains, and every
-// stage what it costs to begin and end one; a single task that belongs to no graph is done by the caller and
-// pays neither. Communication is left out. Task times add up to wall time on one thread only, so a solve on
-// more threads has no model. The model is made after the clock has stopped: during the solve task times are
-// only put down.
+// Task times add up to wall time on one thread only, so a solve on more threads has no model. It is made
+// (worker_model.h) after the clock has stopped: during the solve task times are only put down.
 #pragma once
 
 #include <chrono>
-#include <cstddef>
 #include <span>
 #include <thread>
-#include <vector>
 
 #include "solver/stage_times.h"
-#include "solver/task_schedule.h"
+#include "solver/worker_model.h"
 
 namespace cleave {
 
@@ -28,7 +19,7 @@ class StageClock {
   // threads: of the solves that are timed. dispatch: what the model charges. models: whether solves on one
   // thread are modelled; no graph may be built anew during one then.
   explicit StageClock(int threads = 1, const DispatchCost& dispatch = {}, bool models = true)
-      : models_(threads == 1 && models), dispatch_(dispatch) {}
+      : models_(threads == 1 && models), model_(dispatch) {}
 
   void start();                                // begins a solve: all zero
   void add(Stage stage, double milliseconds);  // serial or parallel wall time of a stage
@@ -39,27 +30,26 @@ class StageClock {
   // those of a graph. Else nothing.
   void add_tasks(std::span<const double> task_ms);
   void add_graph(const TaskGraph& graph, std::span<const double> task_ms);
+  // The same of a background task that has just been done and took so long, and from when on it is needed;
+  // one at a time.
+  void add_background(double milliseconds);
+  void join_background();
   StageTimes stop();  // ends the solve, then models it
 
  private:
   friend class StageTimer;
-  struct ParallelStage {
-    std::size_t end;         // where its tasks end in task_ms_
-    const TaskGraph* graph;  // nullptr: independent
-  };
 
-  void model();
-  void model_stage(const TaskGraph* graph, std::span<double> task_ms);
+  double elapsed_ms() const {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin_).count();
+  }
 
   bool models_;
-  DispatchCost dispatch_;
   bool timing_ = false;
   std::thread::id thread_;  // that started it
   StageTimes times_;
-  std::vector<double> task_ms_;  // of all parallel stages of the solve, one after the other
-  std::vector<ParallelStage> stages_;
-  std::vector<double> worker_ms_;
-  GraphSchedule schedule_;
+  RecordedSolve solve_;
+  bool has_background_ = false;  // that is not needed yet
+  WorkerModel model_;
   Clock::time_point begin_;
 };
 

@@ -8,6 +8,8 @@
 namespace cleave {
 namespace {
 
+constexpr int kSomethingElse = -1;  // in the place of a task
+
 // As pairs compare, without their three ways.
 bool ends_later(const std::pair<double, int>& a, const std::pair<double, int>& b) {
   return a.first > b.first || (a.first == b.first && a.second > b.second);
@@ -15,11 +17,14 @@ bool ends_later(const std::pair<double, int>& a, const std::pair<double, int>& b
 
 }  // namespace
 
-double makespan_ms(std::span<const double> sorted_descending_ms, int workers,
-                   std::vector<double>& worker_ms) {
+double makespan_ms(std::span<const double> sorted_descending_ms, int workers, std::vector<double>& worker_ms,
+                   double busy_ms) {
   worker_ms.assign(workers, 0.0);
-  for (double task : sorted_descending_ms) *std::min_element(worker_ms.begin(), worker_ms.end()) += task;
-  return *std::max_element(worker_ms.begin(), worker_ms.end());
+  worker_ms.back() = busy_ms;
+  double end_ms = 0;
+  for (const double task : sorted_descending_ms)
+    end_ms = std::max(end_ms, *std::min_element(worker_ms.begin(), worker_ms.end()) += task);
+  return end_ms;
 }
 
 void GraphSchedule::begin(const TaskGraph& graph, std::span<const double> task_ms) {
@@ -38,7 +43,7 @@ void GraphSchedule::begin(const TaskGraph& graph, std::span<const double> task_m
   std::ranges::sort(task_of_rank_, {}, [&](int task) { return std::pair(-way_ms_[task], task); });
   rank_of_task_.resize(graph.task_count());
   for (int rank = 0; rank < graph.task_count(); ++rank) rank_of_task_[task_of_rank_[rank]] = rank;
-  running_.reserve(graph.task_count());  // how many there are at once depends on the times
+  running_.reserve(graph.task_count() + 1);  // how many there are at once depends on the times
 }
 
 void GraphSchedule::add_ready(int task) {
@@ -56,7 +61,7 @@ int GraphSchedule::take_ready() {
   return task_of_rank_[64 * first_word_ + bit];
 }
 
-double GraphSchedule::makespan_ms(int workers) {
+double GraphSchedule::makespan_ms(int workers, double busy_ms) {
   const int count = graph_->task_count();
   ready_.assign((count + 63) / 64, 0);
   ready_count_ = 0;
@@ -67,7 +72,8 @@ double GraphSchedule::makespan_ms(int workers) {
     if (waits_[task] == 0) add_ready(task);
   }
   double now_ms = 0;
-  while (ready_count_ > 0 || !running_.empty()) {
+  if (busy_ms > 0) running_.emplace_back(busy_ms, kSomethingElse);
+  for (int left = count; left > 0;) {
     while (ready_count_ > 0 && static_cast<int>(running_.size()) < workers) {
       const int task = take_ready();
       running_.emplace_back(now_ms + task_ms_[task], task);
@@ -77,6 +83,8 @@ double GraphSchedule::makespan_ms(int workers) {
     const auto [end_ms, task] = running_.back();
     running_.pop_back();
     now_ms = end_ms;
+    if (task == kSomethingElse) continue;
+    --left;
     for (const int next : graph_->next(task)) {
       if (--waits_[next] == 0) add_ready(next);
     }

@@ -12,7 +12,9 @@
 namespace cleave {
 
 // Of independent tasks: the longest goes first to the worker that is free first. worker_ms is scratch.
-double makespan_ms(std::span<const double> sorted_descending_ms, int workers, std::vector<double>& worker_ms);
+// busy_ms: how long one of the workers has something else to do, here and below.
+double makespan_ms(std::span<const double> sorted_descending_ms, int workers, std::vector<double>& worker_ms,
+                   double busy_ms = 0);
 
 // Of a graph: whenever a worker is free, it takes of the tasks that are ready the one with the longest way to
 // the end (its own time and the longest of those that wait for it), of two with the same way that of the
@@ -21,7 +23,7 @@ class GraphSchedule {
  public:
   // Finds the ways. The graph and the times stay where they are until the last makespan.
   void begin(const TaskGraph& graph, std::span<const double> task_ms);
-  double makespan_ms(int workers);
+  double makespan_ms(int workers, double busy_ms = 0);
   // The longest way through the graph: the makespan on as many workers as there are tasks.
   double critical_path_ms() const { return longest_ms_; }
 

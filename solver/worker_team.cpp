@@ -128,14 +128,68 @@ void WorkerTeam::take_all(int thread) {
   if (count > 0 && unfinished_.fetch_sub(count) == count) call_others();
 }
 
+// Until somebody calls, ends() or has_work(), which is asked once.
+template <class HasWork, class Ends>
+void WorkerTeam::watch(const HasWork& has_work, const Ends& ends) {
+  ++watching_;
+  const std::uint32_t seen = calls_.load();
+  const auto changed = [&] { return ends() || calls_.load() != seen; };
+  if (!has_work() && !ends() && !look_out(changed)) calls_.wait(seen);
+  --watching_;
+}
+
 void WorkerTeam::work(int thread) {
+  const auto has_work = [this] { return has_open() || background_.load() != nullptr; };
   while (!stop_) {
     take_all(thread);
-    ++watching_;
-    const std::uint32_t seen = calls_.load();
-    if (!has_open() && !stop_ && !look_out([&] { return calls_.load() != seen; })) calls_.wait(seen);
-    --watching_;
+    if (!take_background()) watch(has_work, [this] { return stop_.load(); });
   }
+}
+
+void WorkerTeam::begin(BackgroundTask& task) {
+  task.failure = nullptr;
+  task.is_done = false;
+  BackgroundTask* nobodys = nullptr;
+  task.is_offered = threads_ > 1 && background_.compare_exchange_strong(nobodys, &task);
+  if (task.is_offered) call_others();
+}
+
+// Nothing of it is touched once it is said to be done: it may be gone.
+bool WorkerTeam::take_background() {
+  BackgroundTask* task = background_.load() == nullptr ? nullptr : background_.exchange(nullptr);
+  if (task == nullptr) return false;
+  is_in_task = true;
+  try {
+    task->work();
+  } catch (...) {
+    task->failure = std::current_exception();
+  }
+  is_in_task = false;
+  task->is_done = true;
+  call_others();
+  return true;
+}
+
+// True where nobody has begun it, nor will; else it is done.
+bool WorkerTeam::withdraw(BackgroundTask& task) {
+  BackgroundTask* own = &task;
+  if (!task.is_offered || background_.compare_exchange_strong(own, nullptr)) return true;
+  const auto is_done = [&task] { return task.is_done.load(); };
+  while (!is_done()) watch([] { return false; }, is_done);
+  return false;
+}
+
+void WorkerTeam::finish(BackgroundTask& task) {
+  if (!task.work) return;
+  const bool is_left = withdraw(task);
+  const std::function<void()> work = std::exchange(task.work, nullptr);
+  if (is_left) return work();
+  if (task.failure) std::rethrow_exception(std::exchange(task.failure, nullptr));
+}
+
+void WorkerTeam::cancel(BackgroundTask& task) {
+  if (task.work) withdraw(task);
+  task.work = nullptr;
 }
 
 void WorkerTeam::begin_stage(int count, Task task, void* context) {
@@ -148,14 +202,9 @@ void WorkerTeam::begin_stage(int count, Task task, void* context) {
 // The caller works along and then waits for the tasks of others.
 void WorkerTeam::finish_stage() {
   const auto all_done = [this] { return unfinished_.load() == 0; };
+  const auto has_work = [this] { return has_open(); };
   call_others();
-  for (take_all(0); !all_done(); take_all(0)) {
-    ++watching_;
-    const std::uint32_t seen = calls_.load();
-    const auto changed = [&] { return all_done() || calls_.load() != seen; };
-    if (!has_open() && !all_done() && !look_out(changed)) calls_.wait(seen);
-    --watching_;
-  }
+  for (take_all(0); !all_done(); take_all(0)) watch(has_work, all_done);
   if (failed_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 

@@ -7,6 +7,9 @@
 // how long can be set by CLEAVE_LOOK_OUT_US in the environment, where a machine is known to be one's own.
 // OpenMP makes the threads, so its settings apply to them: OMP_PLACES, OMP_PROC_BIND, OMP_STACKSIZE.
 //
+// Beside the stages goes at most one background task at a time: a thread that has nothing else to do takes
+// it, and it holds up no stage.
+//
 // Every thread has two queues, of tasks that have waited for others, which come first, and of tasks that wait
 // for none. A task is put into a queue of its home, and a thread whose own are empty takes from the others':
 // the same tasks of stage after stage mostly meet the same core and what it has in its cache.
@@ -15,6 +18,7 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -23,6 +27,15 @@
 #include "solver/task_graph.h"
 
 namespace cleave {
+
+// Work beside the stages of a solve. It belongs to its caller, who finishes or cancels it.
+struct BackgroundTask {
+  std::function<void()> work;  // empty: none; runs no stage of its own
+  // The team's.
+  bool is_offered = false;
+  std::exception_ptr failure;
+  std::atomic<bool> is_done{false};
+};
 
 class WorkerTeam {
  public:
@@ -45,6 +58,14 @@ class WorkerTeam {
 
   // The tasks of a graph, each started when those it waits for have returned.
   void run(const TaskGraph& graph, Task task, void* context);
+
+  // Offers a task to the other threads, unless they have not begun another caller's.
+  void begin(BackgroundTask& task);
+  // Returns once it is done; does it here where nobody has begun it. Throws what it threw. Its work is empty
+  // afterwards; nothing where it was so before.
+  void finish(BackgroundTask& task);
+  // The same, but what nobody has begun is left out, and what it threw too.
+  void cancel(BackgroundTask& task);
 
   // For tests: tasks of graphs are listed in an order drawn from this seed, as far as the graph allows; 0, in
   // the order in which they become ready. Not while a stage runs.
@@ -74,6 +95,10 @@ class WorkerTeam {
   bool take_one(int thread);
   bool take_from(Queue& queue);
   bool has_open() const;
+  template <class HasWork, class Ends>
+  void watch(const HasWork& has_work, const Ends& ends);
+  bool take_background();
+  bool withdraw(BackgroundTask& task);
   void call_others();
   void work(int thread);
   void dismiss();
@@ -93,6 +118,7 @@ class WorkerTeam {
   std::vector<int> first_tasks_, home_count_;
   std::uint64_t shuffle_seed_ = 0;
   std::atomic<bool> stop_{false};
+  alignas(64) std::atomic<BackgroundTask*> background_{nullptr};  // that nobody has begun
   alignas(64) std::atomic<int> unfinished_{0};
   // Threads that found nothing to do watch for a change of `calls_`.
   alignas(64) std::atomic<std::uint32_t> calls_{0};

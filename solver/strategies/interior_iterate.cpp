@@ -45,19 +45,12 @@ void InteriorIterate::start_rows(SolveState& state, double inside) {
   barrier_.start(state, row_speed_);
 }
 
-// Rows beside the kernel's analysis, if that is still to be done: it needs none of their values. Cones come
-// after it, in tasks of their own, of which a task can have none.
 void InteriorIterate::start(SolveState& state, double inside) {
   is_to_be_kept_ = false;
   row_error_.resize(state.slack.size());
   choose_impulses(state);
   state.update_shift();
-  if (state.analysis) {
-    state.tasks.run(Stage::analyze, 2,
-                    [&](int task) { task == 0 ? state.analyze() : start_rows(state, inside); });
-  } else {
-    start_rows(state, inside);
-  }
+  start_rows(state, inside);
   cones_.start(state, row_speed_);
   shift_.begin(cones_.product_count());
   update_velocity(state);

@@ -100,15 +100,6 @@ class Pivot : public Strategy {
            state.find_violations(tolerance, SolveState::Violated::after_a_step) <= settled_rows(rows);
   }
 
-  // The kernel's analysis is done beside the sweeps. On one thread it still counts as what it is.
-  int run_predictor(SolveState& state, int sweeps, int settled) {
-    const bool analyzes = static_cast<bool>(state.analysis);
-    const int changed = predictor_.run(sweeps, settled, state.tasks, [&state] { state.analyze(); });
-    if (analyzes && state.tasks.threads() == 1)
-      state.tasks.clock().move(Stage::predict, Stage::analyze, state.analysis_ms);
-    return changed;
-  }
-
   void sweep(SolveState& state, int sweeps) {
     if (sweeps == 0) return;
     StageTimer timer(state.tasks.clock(), Stage::predict);
@@ -116,7 +107,8 @@ class Pivot : public Strategy {
     predictor_.take_in(state.impulse, state.velocity, state.tasks);
     const int settled = settled_rows(state.impulse.size());
     for (int done = 0; done < sweeps; done += SlabSweeps::kMostSweeps) {
-      if (run_predictor(state, std::min(SlabSweeps::kMostSweeps, sweeps - done), settled) <= settled) break;
+      const int most = std::min(SlabSweeps::kMostSweeps, sweeps - done);
+      if (predictor_.run(most, settled, state.tasks) <= settled) break;
     }
     predictor_.give_out(state.impulse, state.velocity, state.tasks);
     state.states_from_impulses();

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdlib>
+#include <functional>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -182,6 +183,106 @@ TEST(WorkerTeamTest, HandsOnAnExceptionOfAGraph) {
     EXPECT_EQ(runs, 41);
     run(team, chain(100), [&](int) { ++runs; });
     EXPECT_EQ(runs, 141);
+  }
+}
+
+TEST(WorkerTeamTest, DoesABackgroundTaskOnceBesideStages) {
+  for (const int threads : {1, 2, 3}) {
+    WorkerTeam team(threads);
+    for (int round = 0; round < 2000; ++round) {
+      std::atomic<int> done = 0, runs = 0;
+      BackgroundTask task;
+      task.work = [&] { ++done; };
+      team.begin(task);
+      for (int stage = 0; stage < round % 4; ++stage) run(team, 5, [&](int) { ++runs; });
+      if (round % 3 == 0) run(team, chain(3), [&](int) { ++runs; });
+      team.finish(task);
+      ASSERT_EQ(done, 1) << threads << " threads, round " << round;
+      ASSERT_EQ(runs, 5 * (round % 4) + (round % 3 == 0 ? 3 : 0));
+      team.finish(task);  // there is none any more
+      ASSERT_EQ(done, 1);
+    }
+  }
+}
+
+// It ends only after the stage has.
+TEST(WorkerTeamTest, ABackgroundTaskHoldsUpNoStage) {
+  WorkerTeam team(2);
+  std::atomic<bool> is_begun = false, may_end = false;
+  BackgroundTask task;
+  task.work = [&] {
+    is_begun = true;
+    while (!may_end) std::this_thread::yield();
+  };
+  team.begin(task);
+  while (!is_begun) std::this_thread::yield();
+  std::atomic<int> runs = 0;
+  run(team, 100, [&](int) { ++runs; });
+  EXPECT_EQ(runs, 100);
+  may_end = true;
+  team.finish(task);
+}
+
+// Another thread than the caller's does it from now on.
+void begin_elsewhere(WorkerTeam& team, BackgroundTask& task, std::function<void()> work) {
+  std::atomic<bool> is_begun = false;
+  task.work = [&is_begun, work = std::move(work)] {
+    is_begun = true;
+    work();
+  };
+  team.begin(task);
+  while (!is_begun) std::this_thread::yield();
+}
+
+TEST(WorkerTeamTest, HandsOnAnExceptionOfABackgroundTask) {
+  const auto fail = [] { throw std::runtime_error("background"); };
+  WorkerTeam alone(1), two(2);
+  BackgroundTask task;
+  task.work = fail;
+  alone.begin(task);
+  EXPECT_THROW(alone.finish(task), std::runtime_error);
+  alone.finish(task);  // there is none any more
+  for (int round = 0; round < 20; ++round) {
+    begin_elsewhere(two, task, fail);
+    if (round % 2 == 0) run(two, 3, [](int) {});
+    EXPECT_THROW(two.finish(task), std::runtime_error);
+    begin_elsewhere(two, task, fail);
+    two.cancel(task);
+    two.finish(task);
+  }
+}
+
+TEST(WorkerTeamTest, ACancelledBackgroundTaskDoesNotRunOn) {
+  WorkerTeam alone(1), two(2);
+  int runs = 0;
+  BackgroundTask task;
+  task.work = [&] { ++runs; };
+  alone.begin(task);
+  alone.cancel(task);
+  EXPECT_EQ(runs, 0);
+  for (int round = 0; round < 20; ++round) {
+    bool has_ended = false;
+    begin_elsewhere(two, task, [&] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      has_ended = true;
+    });
+    two.cancel(task);
+    EXPECT_TRUE(has_ended);
+  }
+}
+
+// Which of them the other thread does is not said.
+TEST(WorkerTeamTest, BackgroundTasksOfTwoCallersAreBothDone) {
+  WorkerTeam team(2);
+  for (int round = 0; round < 500; ++round) {
+    std::atomic<int> done = 0;
+    BackgroundTask first, second;
+    first.work = second.work = [&] { ++done; };
+    team.begin(first);
+    team.begin(second);
+    team.finish(second);
+    team.finish(first);
+    ASSERT_EQ(done, 2) << "round " << round;
   }
 }
 
