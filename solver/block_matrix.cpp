@@ -50,7 +50,7 @@ bool BlockMatrix::analyze(const PreparedStep& step, std::span<const int> bodies,
       cholesky_.analyze(static_cast<int>(bodies.size()), edges_, stage_of_local, stage_count, most_blocks);
   if (!analyzed_) return false;
   place_bodies();
-  place_groups(step, local_of_body, groups);
+  list_entries(step, local_of_body, groups);
   return true;
 }
 
@@ -63,7 +63,7 @@ void BlockMatrix::count(MemoryCount& memory) const {
   cholesky_.count(memory);
   memory.add_grown(bodies_, local_branch_, branch_local_first_, branch_locals_, identity_, entries_,
                    entry_first_, late_places_, late_branch_, late_first_, late_slots_, group_branch_,
-                   group_order_, edges_);
+                   group_order_, edges_, is_placed_);
   memory.add<double>(36, late_places_.size());
   memory.add<char>(late_places_.size());
 }
@@ -81,7 +81,7 @@ bool BlockMatrix::rebind(const PreparedStep& step, std::span<const int> local_of
   for (const auto& [a, b] : edges_) {
     if (!cholesky_.holds(a, b)) return false;
   }
-  place_groups(step, local_of_body, groups);
+  list_entries(step, local_of_body, groups);
   return true;
 }
 
@@ -123,42 +123,68 @@ void BlockMatrix::place_bodies() {
   sort_by_branch(local_branch_, branch_count(), branch_local_first_, branch_locals_);
 }
 
-void BlockMatrix::place_groups(const PreparedStep& step, std::span<const int> local_of_body,
+// Branches are numbered in the order of elimination.
+void BlockMatrix::list_entries(const PreparedStep& step, std::span<const int> local_of_body,
                                std::span<const int> groups) {
   step_ = &step;
-  // Branches are numbered in the order of elimination.
-  const auto branches_of = [&](int g) {
+  group_branch_.clear();
+  entries_.resize(groups.size());
+  is_placed_.assign(branch_count(), 0);
+  for (const int g : groups) {
     const RowGroup& group = step.groups()[g];
     const int branch_a = local_branch_[local_of_body[group.body_a]];
-    return std::pair(branch_a, group.body_b < 0 ? branch_a : local_branch_[local_of_body[group.body_b]]);
-  };
-  group_branch_.clear();
-  for (int g : groups) group_branch_.push_back(std::min(branches_of(g).first, branches_of(g).second));
-  sort_by_branch(group_branch_, branch_count(), entry_first_, group_order_);
-  entries_.clear();
-  late_places_.clear();
-  late_branch_.clear();
-  for (int place : group_order_) {
-    const RowGroup& group = step.groups()[groups[place]];
-    const int a = local_of_body[group.body_a];
-    Entry entry;
-    entry.group = groups[place];
-    entry.a = cholesky_.place(a, a);
-    entry.has_b = group.body_b >= 0;
-    if (entry.has_b) {
-      const int b = local_of_body[group.body_b];
-      entry.b = cholesky_.place(b, b), entry.ab = cholesky_.place(a, b);
-    }
-    const auto [branch_a, branch_b] = branches_of(entry.group);
-    if (branch_a != branch_b) {
-      entry.a_is_late = branch_a > branch_b, entry.b_is_late = !entry.a_is_late;
-      entry.late = static_cast<int>(late_places_.size());
-      late_places_.push_back(entry.a_is_late ? entry.a : entry.b);
-      late_branch_.push_back(std::max(branch_a, branch_b));
-    }
-    entries_.push_back(entry);
+    group_branch_.push_back(
+        group.body_b < 0 ? branch_a : std::min(branch_a, local_branch_[local_of_body[group.body_b]]));
   }
+  sort_by_branch(group_branch_, branch_count(), entry_first_, group_order_);
+  late_branch_.clear();
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const RowGroup& group = step.groups()[groups[group_order_[i]]];
+    Entry& entry = entries_[i] = {};
+    entry.group = groups[group_order_[i]];
+    entry.a.local = local_of_body[group.body_a];
+    if (group.body_b < 0) continue;
+    entry.b.local = local_of_body[group.body_b];
+    const int branch_a = local_branch_[entry.a.local], branch_b = local_branch_[entry.b.local];
+    if (branch_a == branch_b) continue;
+    (branch_a > branch_b ? entry.a : entry.b).is_late = true;
+    entry.late = static_cast<int>(late_branch_.size());
+    late_branch_.push_back(std::max(branch_a, branch_b));
+  }
+  late_places_.resize(late_branch_.size());
   sort_by_branch(late_branch_, branch_count(), late_first_, late_slots_);
+}
+
+// By whoever assembles the branch first.
+void BlockMatrix::place_entries(int branch) {
+  for (int i = entry_first_[branch]; i < entry_first_[branch + 1]; ++i) {
+    Entry& entry = entries_[i];
+    entry.a.place = cholesky_.place(entry.a.local, entry.a.local);
+    if (!entry.has_b()) continue;
+    entry.b.place = cholesky_.place(entry.b.local, entry.b.local);
+    entry.ab = cholesky_.place(entry.a.local, entry.b.local);
+    if (entry.late >= 0) late_places_[entry.late] = entry.a.is_late ? entry.a.place : entry.b.place;
+  }
+  is_placed_[branch] = 1;
+}
+
+// Of one group of rows, whose bodies' blocks go to their places or are kept for later.
+void BlockMatrix::add_entry(const Entry& entry, const WeightedRows& rows) {
+  const RowGroup& group = step_->groups()[entry.group];
+  double* panels = cholesky_.panels();
+  double gram[144];
+  const bool any = weighted_gram(group.row_count, rows.jacobian() + 12L * group.first_row,
+                                 rows.d().data() + group.first_row, gram);
+  if (entry.late >= 0) late_any_[entry.late] = any;
+  if (!any) return;
+  const auto add = [&](const BlockCholesky::Place& place, const double* block) {
+    add_block(panels + place.offset, place.leading_dimension, block, 12, place.transposed);
+  };
+  if (!entry.a.is_late) add(entry.a.place, gram);
+  if (!entry.has_b()) return;
+  if (!entry.b.is_late) add(entry.b.place, gram + 78);
+  add(entry.ab, gram + 6);
+  if (entry.late >= 0) copy_block(gram + (entry.a.is_late ? 0 : 78), late_blocks_.data() + 36L * entry.late);
 }
 
 void BlockMatrix::assemble(const WeightedRows& rows, int branch) {
@@ -172,22 +198,8 @@ void BlockMatrix::assemble(const WeightedRows& rows, int branch) {
       for (int r = 0; r < 6; ++r) panels[place.offset + r + c * place.leading_dimension] += mass[r + 6 * c];
     }
   }
-  const double *jacobian = rows.jacobian(), *d = rows.d().data();
-  double gram[144];
-  for (int i = entry_first_[branch]; i < entry_first_[branch + 1]; ++i) {
-    const Entry& entry = entries_[i];
-    const RowGroup& group = step_->groups()[entry.group];
-    const bool any =
-        weighted_gram(group.row_count, jacobian + 12L * group.first_row, d + group.first_row, gram);
-    if (entry.late >= 0) late_any_[entry.late] = any;
-    if (!any) continue;
-    if (!entry.a_is_late) add_block(panels + entry.a.offset, entry.a.leading_dimension, gram, 12, false);
-    if (!entry.has_b) continue;
-    if (!entry.b_is_late) add_block(panels + entry.b.offset, entry.b.leading_dimension, gram + 78, 12, false);
-    add_block(panels + entry.ab.offset, entry.ab.leading_dimension, gram + 6, 12, entry.ab.transposed);
-    if (entry.late >= 0)
-      copy_block(gram + (entry.a_is_late ? 0 : 78), late_blocks_.data() + 36L * entry.late);
-  }
+  if (!is_placed_[branch]) place_entries(branch);
+  for (int i = entry_first_[branch]; i < entry_first_[branch + 1]; ++i) add_entry(entries_[i], rows);
 }
 
 void BlockMatrix::add_late(int slot) {

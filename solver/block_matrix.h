@@ -70,19 +70,29 @@ class BlockMatrix {
   const BlockCholesky& cholesky() const { return cholesky_; }
 
  private:
+  // A group of rows. Where its blocks belong is looked up in the first assembly of its branch.
   struct Entry {
+    struct Body {
+      int local = -1;  // -1: static
+      bool is_late = false;
+      BlockCholesky::Place place;
+    };
+    bool has_b() const { return b.local >= 0; }
+
     int group = 0;
-    bool has_b = false, a_is_late = false, b_is_late = false;
-    BlockCholesky::Place a, b, ab;
+    Body a, b;
+    BlockCholesky::Place ab;
     int late = -1;  // slot of the diagonal block kept for another branch, -1 for none
   };
 
   void number(const PreparedStep& step);
   void list_edges(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
   void place_bodies();
-  void add_late(int slot);
-  void place_groups(const PreparedStep& step, std::span<const int> local_of_body,
+  void list_entries(const PreparedStep& step, std::span<const int> local_of_body,
                     std::span<const int> groups);
+  void place_entries(int branch);
+  void add_entry(const Entry& entry, const WeightedRows& rows);
+  void add_late(int slot);
 
   const PreparedStep* step_ = nullptr;
   BlockCholesky cholesky_;
@@ -92,6 +102,7 @@ class BlockMatrix {
   std::vector<int> identity_;                      // 0, 1, ...: at least as many as bodies and as groups
   std::vector<Entry> entries_;                     // sorted by branch of assembly
   std::vector<int> entry_first_;                   // (branches + 1)
+  std::vector<char> is_placed_;                    // by branch
   std::vector<BlockCholesky::Place> late_places_;  // of the slots
   std::vector<int> late_branch_, late_first_, late_slots_;  // slots by the branch that they are kept for
   std::vector<int> group_branch_;    // branch of assembly, in the order in which the groups were given

@@ -80,13 +80,13 @@ std::span<const FrictionCone> cones_between(std::span<const FrictionCone> cones,
   return {begin, std::ranges::lower_bound(begin, cones.end(), last, {}, &FrictionCone::first_row)};
 }
 
-void ImpulseSet::project(std::span<double> impulse) const {
-  visit_intervals(0, static_cast<int>(impulse.size()), [&](int first, int last) {
-    for (int r = first; r < last; ++r) {
+void ImpulseSet::project(int first, int last, std::span<double> impulse) const {
+  visit_intervals(first, last, [&](int begin, int end) {
+    for (int r = begin; r < end; ++r) {
       impulse[r] = std::clamp(impulse[r], problem_->lower[r], problem_->upper[r]);
     }
   });
-  for (const FrictionCone& cone : cones_)
+  for (const FrictionCone& cone : cones_of(first, last))
     store_contact(cone, project_on_cone(load_contact(cone, impulse), cone.mu), impulse);
 }
 

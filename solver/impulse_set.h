@@ -59,8 +59,10 @@ class ImpulseSet {
   // x (m, along the axes) in rows: x itself without turned boxes, else in scratch.
   std::span<const double> in_rows(std::span<const double> x, std::vector<double>& scratch) const;
 
-  // impulse (m, along the axes) <- the nearest point of the set.
-  void project(std::span<double> impulse) const;
+  // impulse (m, along the axes) <- the nearest point of the set, of all rows or of first .. last - 1, which a
+  // cone belongs to with its normal row.
+  void project(std::span<double> impulse) const { project(0, static_cast<int>(impulse.size()), impulse); }
+  void project(int first, int last, std::span<double> impulse) const;
 
   // max_r d_r |lambda_r - projection of (lambda_r - w_r / d_r)| of rows first .. last - 1; arrays (m) along
   // the axes. A cone is projected on as a whole and is of the range that its normal row is in; Coulomb's law

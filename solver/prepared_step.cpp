@@ -133,11 +133,18 @@ void PreparedStep::level_diagonal() {
 }
 
 void PreparedStep::invert_diagonal() {
+  chunk_compliance_.assign(group_chunks_.size(), std::numeric_limits<double>::infinity());
+  const RowWork invert = [this](int first, int last, int chunk) {
+    double& least = chunk_compliance_[chunk];
+    for (int r = first; r < last; ++r) {
+      inverse_diagonal_[r] = 1 / diagonal_[r];
+      least = std::min(least, problem_->compliance[r] / diagonal_[r]);
+    }
+  };
+  run(group_chunks_, [&](const Chunk& chunk) { do_rows(invert, chunk); });
   least_relative_compliance_ = std::numeric_limits<double>::infinity();
-  for (std::size_t r = 0; r < diagonal_.size(); ++r) {
-    inverse_diagonal_[r] = 1 / diagonal_[r];
-    least_relative_compliance_ = std::min(least_relative_compliance_, problem_->compliance[r] / diagonal_[r]);
-  }
+  for (const double least : chunk_compliance_)
+    least_relative_compliance_ = std::min(least_relative_compliance_, least);
 }
 
 void PreparedStep::velocity(std::span<const double> impulse, std::span<double> v,

@@ -115,6 +115,7 @@ class PreparedStep {
   std::vector<Chunk> group_chunks_, body_chunks_;
   mutable std::vector<double> group_sums_;  // scratch: (groups, 12)
   std::vector<double> inverse_mass_, mass_jacobian_, diagonal_, inverse_diagonal_;
+  std::vector<double> chunk_compliance_;  // the least of C_r / d_r by chunk of groups
   long preparations_ = 0;
   double velocity_scale_ = 1, least_relative_compliance_ = 0;
 };

@@ -11,6 +11,9 @@
 namespace cleave {
 namespace {
 
+// Longer groups of rows are sorted as if they were of this length.
+constexpr int kLongestSorted = 255;
+
 constexpr Octet empty_octet(int first_row, int row_count) {
   Octet octet{.first_row = first_row, .row_count = row_count, .body_a = {}, .body_b = {}};
   std::ranges::fill(octet.body_a, -1);
@@ -43,11 +46,13 @@ void SlabSweeps::sort_groups(const PreparedStep& step) {
   const std::span<const RowGroup> all = step.groups();
   const int sets = slabs_.set_count(), groups = static_cast<int>(all.size());
   const int most = groups == 0 ? 0 : std::ranges::max(all, {}, &RowGroup::row_count).row_count;
-  sort_into_buckets(
-      groups, most + 1, [&](int g) { return most - all[g].row_count; }, length_first_, by_length_);
-  sort_into_buckets(
-      groups, sets, [&](int k) { return slabs_.set_of(all[by_length_[k]]); }, group_first_, groups_);
-  for (int& g : groups_) g = by_length_[g];
+  const int longest = std::min(most, kLongestSorted), lengths = longest + 1;
+  const auto set_and_length = [&](int g) {
+    return slabs_.set_of(all[g]) * lengths + longest - std::min(all[g].row_count, longest);
+  };
+  sort_into_buckets(groups, sets * lengths, set_and_length, bucket_first_, groups_);
+  group_first_.resize(sets + 1);
+  for (int set = 0; set <= sets; ++set) group_first_[set] = bucket_first_[set * lengths];
   octets_.resize(groups);
   place_of_group_.resize(groups);
   octet_count_.resize(sets);

@@ -85,7 +85,7 @@ class SlabSweeps {
   std::vector<int> changed_;       // by set, at the last look
   int changed_rows_ = 0;           // of all
   bool is_settled_ = false;
-  std::vector<int> slab_first_, bodies_by_slab_, length_first_, by_length_;  // scratch
+  std::vector<int> slab_first_, bodies_by_slab_, bucket_first_;  // scratch
 };
 
 }  // namespace cleave

@@ -14,24 +14,30 @@ void SolveState::begin(const PreparedStep& prepared, Kernel& solve_kernel, Solve
   step = &prepared;
   kernel = &solve_kernel;
   summary = &solve_summary;
-  const StepProblem& problem = prepared.problem();
-  const std::size_t m = problem.row_count(), n6 = 6 * static_cast<std::size_t>(problem.body_count());
-  impulse.assign(warm_impulse.begin(), warm_impulse.end());
-  prepared.set().project(impulse);
+  begin_rows(warm_impulse);
+  const std::size_t n6 = 6 * static_cast<std::size_t>(prepared.body_count());
   velocity.resize(n6);
-  slack.resize(m);
-  row_state.assign(m, RowState::free);
-  weight.assign(m, 0.0);
   f_v.assign(n6, 0.0);
-  f_r.assign(m, 0.0);
   dv.resize(n6);
-  dlambda.resize(m);
-  violated.clear();
   blocks.assign(prepared.set().axes().begin(), prepared.set().axes().end());
   for (const FrictionCone& cone : prepared.set().cones())
     blocks.push_back({cone.first_row, cone.row_count, {}});
   shift.assign(prepared.set().cones().size(), 0.0);
   update_velocity();
+}
+
+void SolveState::begin_rows(std::span<const double> warm_impulse) {
+  for (std::vector<double>* of_rows : {&impulse, &slack, &weight, &f_r, &dlambda})
+    of_rows->resize(warm_impulse.size());
+  row_state.resize(warm_impulse.size());
+  violated.clear();
+  run_over_rows([&](int first, int last, int) {
+    std::copy(warm_impulse.begin() + first, warm_impulse.begin() + last, impulse.begin() + first);
+    step->set().project(first, last, impulse);
+    std::fill(row_state.begin() + first, row_state.begin() + last, RowState::free);
+    std::fill(weight.begin() + first, weight.begin() + last, 0.0);
+    std::fill(f_r.begin() + first, f_r.begin() + last, 0.0);
+  });
 }
 
 void SolveState::update_velocity(const RowsAround& around) {
