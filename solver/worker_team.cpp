@@ -139,7 +139,7 @@ void WorkerTeam::watch(const HasWork& has_work, const Ends& ends) {
 }
 
 void WorkerTeam::work(int thread) {
-  const auto has_work = [this] { return has_open() || background_.load() != nullptr; };
+  const auto has_work = [this] { return has_open() || !background_.is_empty(); };
   while (!stop_) {
     take_all(thread);
     if (!take_background()) watch(has_work, [this] { return stop_.load(); });
@@ -147,33 +147,21 @@ void WorkerTeam::work(int thread) {
 }
 
 void WorkerTeam::begin(BackgroundTask& task) {
-  task.failure = nullptr;
-  task.is_done = false;
-  BackgroundTask* nobodys = nullptr;
-  task.is_offered = threads_ > 1 && background_.compare_exchange_strong(nobodys, &task);
+  task.is_offered = threads_ > 1 && background_.offer(task);
   if (task.is_offered) call_others();
 }
 
-// Nothing of it is touched once it is said to be done: it may be gone.
 bool WorkerTeam::take_background() {
-  BackgroundTask* task = background_.load() == nullptr ? nullptr : background_.exchange(nullptr);
-  if (task == nullptr) return false;
   is_in_task = true;
-  try {
-    task->work();
-  } catch (...) {
-    task->failure = std::current_exception();
-  }
+  const bool has_run = background_.run();
   is_in_task = false;
-  task->is_done = true;
-  call_others();
-  return true;
+  if (has_run) call_others();
+  return has_run;
 }
 
 // True where nobody has begun it, nor will; else it is done.
-bool WorkerTeam::withdraw(BackgroundTask& task) {
-  BackgroundTask* own = &task;
-  if (!task.is_offered || background_.compare_exchange_strong(own, nullptr)) return true;
+bool WorkerTeam::leave_out(BackgroundTask& task) {
+  if (background_.withdraw(task)) return true;
   const auto is_done = [&task] { return task.is_done.load(); };
   while (!is_done()) watch([] { return false; }, is_done);
   return false;
@@ -181,14 +169,14 @@ bool WorkerTeam::withdraw(BackgroundTask& task) {
 
 void WorkerTeam::finish(BackgroundTask& task) {
   if (!task.work) return;
-  const bool is_left = withdraw(task);
+  const bool is_left_out = leave_out(task);
   const std::function<void()> work = std::exchange(task.work, nullptr);
-  if (is_left) return work();
+  if (is_left_out) return work();
   if (task.failure) std::rethrow_exception(std::exchange(task.failure, nullptr));
 }
 
 void WorkerTeam::cancel(BackgroundTask& task) {
-  if (task.work) withdraw(task);
+  if (task.work) leave_out(task);
   task.work = nullptr;
 }
 

@@ -18,24 +18,15 @@
 #include <atomic>
 #include <cstdint>
 #include <exception>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
 #include <vector>
 
+#include "solver/background_task.h"
 #include "solver/task_graph.h"
 
 namespace cleave {
-
-// Work beside the stages of a solve. It belongs to its caller, who finishes or cancels it.
-struct BackgroundTask {
-  std::function<void()> work;  // empty: none; runs no stage of its own
-  // The team's.
-  bool is_offered = false;
-  std::exception_ptr failure;
-  std::atomic<bool> is_done{false};
-};
 
 class WorkerTeam {
  public:
@@ -98,7 +89,7 @@ class WorkerTeam {
   template <class HasWork, class Ends>
   void watch(const HasWork& has_work, const Ends& ends);
   bool take_background();
-  bool withdraw(BackgroundTask& task);
+  bool leave_out(BackgroundTask& task);
   void call_others();
   void work(int thread);
   void dismiss();
@@ -118,7 +109,7 @@ class WorkerTeam {
   std::vector<int> first_tasks_, home_count_;
   std::uint64_t shuffle_seed_ = 0;
   std::atomic<bool> stop_{false};
-  alignas(64) std::atomic<BackgroundTask*> background_{nullptr};  // that nobody has begun
+  alignas(64) BackgroundPlace background_;
   alignas(64) std::atomic<int> unfinished_{0};
   // Threads that found nothing to do watch for a change of `calls_`.
   alignas(64) std::atomic<std::uint32_t> calls_{0};
