@@ -123,13 +123,10 @@ void BlockMatrix::place_bodies() {
   sort_by_branch(local_branch_, branch_count(), branch_local_first_, branch_locals_);
 }
 
-// Branches are numbered in the order of elimination.
-void BlockMatrix::list_entries(const PreparedStep& step, std::span<const int> local_of_body,
-                               std::span<const int> groups) {
-  step_ = &step;
+// By the branch that is eliminated first: branches are numbered in that order.
+void BlockMatrix::sort_groups(const PreparedStep& step, std::span<const int> local_of_body,
+                              std::span<const int> groups) {
   group_branch_.clear();
-  entries_.resize(groups.size());
-  is_placed_.assign(branch_count(), 0);
   for (const int g : groups) {
     const RowGroup& group = step.groups()[g];
     const int branch_a = local_branch_[local_of_body[group.body_a]];
@@ -137,6 +134,14 @@ void BlockMatrix::list_entries(const PreparedStep& step, std::span<const int> lo
         group.body_b < 0 ? branch_a : std::min(branch_a, local_branch_[local_of_body[group.body_b]]));
   }
   sort_by_branch(group_branch_, branch_count(), entry_first_, group_order_);
+}
+
+void BlockMatrix::list_entries(const PreparedStep& step, std::span<const int> local_of_body,
+                               std::span<const int> groups) {
+  step_ = &step;
+  sort_groups(step, local_of_body, groups);
+  is_placed_.assign(branch_count(), 0);
+  entries_.resize(groups.size());
   late_branch_.clear();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const RowGroup& group = step.groups()[groups[group_order_[i]]];

@@ -88,6 +88,7 @@ class BlockMatrix {
   void number(const PreparedStep& step);
   void list_edges(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
   void place_bodies();
+  void sort_groups(const PreparedStep& step, std::span<const int> local_of_body, std::span<const int> groups);
   void list_entries(const PreparedStep& step, std::span<const int> local_of_body,
                     std::span<const int> groups);
   void place_entries(int branch);

@@ -21,9 +21,9 @@ void ParallelTasks::begin_background(std::function<void()> work) {
     background_.work = std::move(work);
     return team_.begin(background_);
   }
-  const auto begin = StageClock::Clock::now();
+  clock_.begin_background();
   work();
-  clock_.add_background(std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin).count());
+  clock_.end_background();
 }
 
 void ParallelTasks::finish_background(Stage stage) {

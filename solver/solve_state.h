@@ -51,6 +51,7 @@ struct SolveState {
   // Binds the state to a problem; impulses start from the warm start (along the axes), moved into the set.
   void begin(const PreparedStep& prepared, Kernel& solve_kernel, SolveSummary& solve_summary,
              std::span<const double> warm_impulse);
+  // Of that, what is kept by row.
   void begin_rows(std::span<const double> warm_impulse);
 
   // v = v0 + M^-1 J^T lambda and w = J v + C lambda - b (plus the shift) from the impulses. around: may write

@@ -30,11 +30,16 @@ void StageClock::add_graph(const TaskGraph& graph, std::span<const double> task_
   if (models_) solve_.stages.back().graph = &graph;
 }
 
-void StageClock::add_background(double milliseconds) {
+void StageClock::begin_background() {
   if (!models_) return;
-  solve_.backgrounds.push_back(
-      {.begin_ms = elapsed_ms() - milliseconds, .ms = milliseconds, .first_stage = solve_.stages.size()});
+  solve_.backgrounds.push_back({.begin_ms = elapsed_ms(), .first_stage = solve_.stages.size()});
   has_background_ = true;
+}
+
+void StageClock::end_background() {
+  if (!has_background_) return;
+  RecordedSolve::Background& last = solve_.backgrounds.back();
+  last.ms = elapsed_ms() - last.begin_ms;
 }
 
 void StageClock::join_background() {

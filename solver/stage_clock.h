@@ -30,9 +30,10 @@ class StageClock {
   // those of a graph. Else nothing.
   void add_tasks(std::span<const double> task_ms);
   void add_graph(const TaskGraph& graph, std::span<const double> task_ms);
-  // The same of a background task that has just been done and took so long, and from when on it is needed;
-  // one at a time.
-  void add_background(double milliseconds);
+  // The same of a background task: where it begins and ends, no stage between the two, and from when on it is
+  // needed; one at a time.
+  void begin_background();
+  void end_background();
   void join_background();
   StageTimes stop();  // ends the solve, then models it
 

@@ -27,7 +27,7 @@ struct RecordedSolve {
     const TaskGraph* graph;  // nullptr: independent
     double end_ms;
   };
-  // Done at begin_ms, its result needed at join_ms: beside the stages first_stage .. end_stage - 1.
+  // Begun at begin_ms, its result needed at join_ms: beside the stages first_stage .. end_stage - 1.
   struct Background {
     double begin_ms = 0, ms = 0, join_ms = 0;
     std::size_t first_stage = 0, end_stage = 0;

@@ -7,8 +7,8 @@
 // how long can be set by CLEAVE_LOOK_OUT_US in the environment, where a machine is known to be one's own.
 // OpenMP makes the threads, so its settings apply to them: OMP_PLACES, OMP_PROC_BIND, OMP_STACKSIZE.
 //
-// Beside the stages goes at most one background task at a time: a thread that has nothing else to do takes
-// it, and it holds up no stage.
+// Beside the stages go background tasks: a thread that has nothing else to do takes one, which holds up no
+// stage.
 //
 // Every thread has two queues, of tasks that have waited for others, which come first, and of tasks that wait
 // for none. A task is put into a queue of its home, and a thread whose own are empty takes from the others':

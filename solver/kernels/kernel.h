@@ -27,7 +27,7 @@ class Kernel {
   // kernels that do not split. What factor and workspace will take, with D > 0 on every row, is requested of
   // tasks.memory() before it is allocated: throws MemoryRefused, here and in rebind.
   virtual void analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) = 0;
-  // Whether analyze and rebind run no tasks, so that they may be one.
+  // Whether analyze and rebind run no tasks, so that they may be one, in the background of a solve.
   virtual bool analyzes_as_a_task() const { return false; }
 
   // Instead of analyze, for the bodies and parts analysed last but other rows: true where every pair of

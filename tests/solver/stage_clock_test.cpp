@@ -19,9 +19,13 @@ double makespan(std::vector<double> tasks, int workers) {
   return makespan_ms(tasks, workers, scratch);
 }
 
+double milliseconds_since(StageClock::Clock::time_point begin) {
+  return std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin).count();
+}
+
 void spin_ms(double milliseconds) {
   const auto begin = StageClock::Clock::now();
-  while (std::chrono::duration<double, std::milli>(StageClock::Clock::now() - begin).count() < milliseconds) {
+  while (milliseconds_since(begin) < milliseconds) {
   }
 }
 
@@ -101,6 +105,42 @@ TEST(StageClockTest, ChargesDispatchOnMoreThanOneWorker) {
   EXPECT_NEAR(gain_ms(times.model_ms[2]), 3 - (0.25 + 1.2) + chain_ms, 1e-9);
   EXPECT_NEAR(gain_ms(times.model_ms.back()), 3 - (0.25 + 1.2) + chain_ms, 1e-9);
   EXPECT_NEAR(gain_ms(times.critical_path_ms), 3 - (0.25 + 1.2) + chain_ms, 1e-9);
+}
+
+// Serial time that is at least as long hides it, whether it is waited for or ends with the solve.
+TEST(StageClockTest, ModelsABackgroundTaskBesideSerialTime) {
+  StageClock clock;
+  for (const bool joins : {true, false}) {
+    clock.start();
+    const auto begin = StageClock::Clock::now();
+    clock.begin_background();
+    spin_ms(1);
+    clock.end_background();
+    const double most_ms = milliseconds_since(begin);
+    spin_ms(2 * most_ms);
+    if (joins) clock.join_background();
+    clock.join_background();  // there is none any more
+    const StageTimes times = clock.stop();
+    EXPECT_EQ(times.model_ms[0], times.total_ms);
+    for (const double model_ms : {times.model_ms[1], times.model_ms.back(), times.critical_path_ms}) {
+      EXPECT_GE(times.total_ms - model_ms, 1 - 1e-9) << joins;
+      EXPECT_LE(times.total_ms - model_ms, most_ms + 1e-9) << joins;
+    }
+  }
+}
+
+TEST(StageClockTest, ABackgroundTaskThatIsNeededAtOnceGainsLittle) {
+  StageClock clock;
+  clock.start();
+  clock.begin_background();
+  spin_ms(1);
+  const auto end = StageClock::Clock::now();
+  clock.end_background();
+  clock.join_background();
+  const double most_ms = milliseconds_since(end);
+  const StageTimes times = clock.stop();
+  EXPECT_GE(times.total_ms - times.model_ms[1], -1e-9);
+  EXPECT_LE(times.total_ms - times.model_ms[1], most_ms + 1e-9);
 }
 
 // Where the cost is not known, one worker is still what was measured.
