@@ -24,7 +24,8 @@ bool all_finite(std::span<const double> values) {
 }
 
 // velocity: (n, 6), of which bodies that are not needed keep theirs.
-void write_velocities(const BodyStates& bodies, std::span<double> velocity) {
+template <class Real>
+void write_velocities(const BodyStates<Real>& bodies, std::span<double> velocity) {
   for (std::size_t i = 0; i < bodies.velocity.size(); ++i)
     for (int k = 0; bodies.is_needed[i] && k < 6; ++k)
       velocity[6 * i + k] = static_cast<double>(bodies.velocity[i].sum()[k]);
@@ -34,12 +35,12 @@ void write_velocities(const BodyStates& bodies, std::span<double> velocity) {
 double find_velocity_scale(const StepProblem& problem, double largest_free_velocity) {
   double largest = largest_free_velocity;
   for (int r = 0; r < problem.row_count(); ++r) {
-    Real before = 0;  // (J v0)_r
+    Extended before = 0;  // (J v0)_r
     for (int side = 0; side < 2; ++side) {
       const int body = problem.row_body[2 * r + side];
       if (body < 0) continue;
-      before +=
-          jacobian_block(problem, r, side).dot(ConstVector6(&problem.free_velocity[6 * body]).cast<Real>());
+      before += jacobian_block<Extended>(problem, r, side)
+                    .dot(ConstVector6(&problem.free_velocity[6 * body]).cast<Extended>());
     }
     largest = larger_or_nan(largest, static_cast<double>(std::abs(before)));
     largest = larger_or_nan(largest, std::abs(problem.rhs[r]));
@@ -47,8 +48,8 @@ double find_velocity_scale(const StepProblem& problem, double largest_free_veloc
   return largest;
 }
 
-void judge_rows(const StepProblem& problem, const BodyStates& bodies, std::span<const double> impulse,
-                ResidualReport& report) {
+void judge_rows(const StepProblem& problem, const BodyStates<Extended>& bodies,
+                std::span<const double> impulse, ResidualReport& report) {
   const std::vector<double> residuals = find_residuals(problem, bodies, impulse);
   for (int r = 0; r < problem.row_count(); ++r) {
     const double residual = residuals[r];
@@ -62,18 +63,29 @@ void judge_rows(const StepProblem& problem, const BodyStates& bodies, std::span<
 
 // 1/2 v^T M v - 1/2 v0^T M v0 is (J^T lambda)^T (v0 + v) / 2 because M (v - v0) = J^T lambda: a sum of small
 // terms in place of the difference of two large ones.
-void judge_energy(const StepProblem& problem, const BodyStates& bodies, std::span<const double> impulse,
-                  ResidualReport& report) {
-  Real gain = 0;
-  Real kinetic = 0;
+void judge_energy(const StepProblem& problem, const BodyStates<Extended>& bodies,
+                  std::span<const double> impulse, ResidualReport& report) {
+  Extended gain = 0;
+  Extended kinetic = 0;
   for (int i = 0; i < problem.body_count(); ++i) {
-    const Vector6 velocity = bodies.velocity[i].sum();
-    gain += bodies.impulse[i].dot(velocity + ConstVector6(&problem.free_velocity[6 * i]).cast<Real>()) / 2;
-    kinetic += velocity.dot(ConstMatrix6(&problem.mass[36 * i]).cast<Real>() * velocity) / 2;
+    const Vector6<Extended> velocity = bodies.velocity[i].sum();
+    gain +=
+        bodies.impulse[i].dot(velocity + ConstVector6(&problem.free_velocity[6 * i]).cast<Extended>()) / 2;
+    kinetic += velocity.dot(ConstMatrix6(&problem.mass[36 * i]).cast<Extended>() * velocity) / 2;
   }
-  for (int r = 0; r < problem.row_count(); ++r) gain -= Real(impulse[r]) * problem.rhs[r];
+  for (int r = 0; r < problem.row_count(); ++r) gain -= Extended(impulse[r]) * problem.rhs[r];
   report.energy_excess_j = static_cast<double>(gain);
   report.kinetic_energy_j = static_cast<double>(kinetic);
+}
+
+template <class Real>
+std::vector<double> residuals_of_rows(const StepProblem& problem, std::span<const double> impulse,
+                                      std::span<const char> asked, std::span<double> velocity) {
+  assert(std::ssize(impulse) == problem.row_count());
+  if (!all_finite(impulse)) return std::vector<double>(impulse.size(), kNan);
+  const BodyStates<Real> bodies = find_body_states<Real>(problem, impulse, asked);
+  if (!velocity.empty()) write_velocities(bodies, velocity);
+  return find_residuals(problem, bodies, impulse, asked);
 }
 
 // An infinite impulse can meet an infinite bound and look consistent, so nothing but NaN is reported for it.
@@ -104,7 +116,7 @@ ResidualReport judge(const StepProblem& problem, std::span<const double> impulse
     report_nan(report);
     return report;
   }
-  const BodyStates bodies = find_body_states(problem, impulse);
+  const BodyStates<Extended> bodies = find_body_states<Extended>(problem, impulse);
   write_velocities(bodies, report.velocity);
   judge_rows(problem, bodies, impulse, report);
   const double scale = find_velocity_scale(problem, report.largest_free_velocity_m_per_s);
@@ -116,12 +128,12 @@ ResidualReport judge(const StepProblem& problem, std::span<const double> impulse
 
 std::vector<double> row_residuals(const StepProblem& problem, std::span<const double> impulse,
                                   std::span<const char> asked, std::span<double> velocity) {
-  using namespace judging;
-  assert(std::ssize(impulse) == problem.row_count());
-  if (!all_finite(impulse)) return std::vector<double>(impulse.size(), kNan);
-  const BodyStates bodies = find_body_states(problem, impulse, asked);
-  if (!velocity.empty()) write_velocities(bodies, velocity);
-  return find_residuals(problem, bodies, impulse, asked);
+  return judging::residuals_of_rows<judging::Extended>(problem, impulse, asked, velocity);
+}
+
+std::vector<double> rough_row_residuals(const StepProblem& problem, std::span<const double> impulse,
+                                        std::span<const char> asked, std::span<double> velocity) {
+  return judging::residuals_of_rows<double>(problem, impulse, asked, velocity);
 }
 
 }  // namespace cleave

@@ -55,4 +55,9 @@ ResidualReport judge(const StepProblem& problem, std::span<const double> impulse
 std::vector<double> row_residuals(const StepProblem& problem, std::span<const double> impulse,
                                   std::span<const char> asked = {}, std::span<double> velocity = {});
 
+// The same in double, several times as fast, for a first look at what the judge sees again: in the residual
+// is a rounding error of a few 1e-15 times the velocities that impulses make and that cancel.
+std::vector<double> rough_row_residuals(const StepProblem& problem, std::span<const double> impulse,
+                                        std::span<const char> asked = {}, std::span<double> velocity = {});
+
 }  // namespace cleave

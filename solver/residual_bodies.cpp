@@ -6,7 +6,8 @@
 
 namespace cleave::judging {
 
-void MassFactor::compute(const double* mass) {
+template <class Real>
+void MassFactor<Real>::compute(const double* mass) {
   is_positive_ = true;
   for (int i = 0; i < 6; ++i) {
     const double* row = mass + 6 * i;
@@ -21,8 +22,9 @@ void MassFactor::compute(const double* mass) {
   }
 }
 
-Vector6 MassFactor::solve(Vector6 f) const {
-  if (!is_positive_) return Vector6::Constant(std::numeric_limits<Real>::quiet_NaN());
+template <class Real>
+Vector6<Real> MassFactor<Real>::solve(Vector6<Real> f) const {
+  if (!is_positive_) return Vector6<Real>::Constant(std::numeric_limits<Real>::quiet_NaN());
   for (int i = 0; i < 6; ++i) {
     Real sum = 0;
     for (int k = first_[i]; k < i; ++k) sum += l_[i][k] * f[k];
@@ -37,23 +39,27 @@ Vector6 MassFactor::solve(Vector6 f) const {
   return f;
 }
 
-SplitVector6::SplitVector6(const Vector6& numbers) : high_(numbers.cast<double>()) {
+template class MassFactor<double>;
+template class MassFactor<Extended>;
+
+SplitVector6::SplitVector6(const Vector6<Extended>& numbers) : high_(numbers.cast<double>()) {
   for (int k = 0; k < 6; ++k)
     low_[k] = std::isfinite(high_[k]) ? static_cast<double>(numbers[k] - high_[k]) : 0;
 }
 
 namespace {
 
-void mark_needed(const StepProblem& problem, std::span<const char> asked, BodyStates& bodies) {
-  if (asked.empty()) std::ranges::fill(bodies.is_needed, 1);
+void mark_needed(const StepProblem& problem, std::span<const char> asked, std::span<char> is_needed) {
+  if (asked.empty()) std::ranges::fill(is_needed, 1);
   for (int r = 0; r < static_cast<int>(asked.size()); ++r)
     for (const int body : {problem.row_body[2 * r], problem.row_body[2 * r + 1]})
-      if (body >= 0 && asked[r]) bodies.is_needed[body] = 1;
+      if (body >= 0 && asked[r]) is_needed[body] = 1;
 }
 
 // sum += J^T lambda of `count` rows, of the body on one side of all of them. Six sums stay in registers: to
 // store and load numbers of extended precision takes several times as long as to add them.
-void add_impulses(const double* jacobian, const double* impulse, int count, Vector6& sum) {
+template <class Real>
+void add_impulses(const double* jacobian, const double* impulse, int count, Vector6<Real>& sum) {
   Real s0 = sum[0], s1 = sum[1], s2 = sum[2], s3 = sum[3], s4 = sum[4], s5 = sum[5];
   for (int r = 0; r < count; ++r, jacobian += 12) {
     const Real lambda = impulse[r];
@@ -78,10 +84,11 @@ int end_of_pair(const StepProblem& problem, int row) {
 
 }  // namespace
 
-BodyStates find_body_states(const StepProblem& problem, std::span<const double> impulse,
-                            std::span<const char> asked) {
-  BodyStates bodies(problem.body_count());
-  mark_needed(problem, asked, bodies);
+template <class Real>
+BodyStates<Real> find_body_states(const StepProblem& problem, std::span<const double> impulse,
+                                  std::span<const char> asked) {
+  BodyStates<Real> bodies(problem.body_count());
+  mark_needed(problem, asked, bodies.is_needed);
   for (int first = 0, last = 0; first < problem.row_count(); first = last) {
     last = end_of_pair(problem, first);
     for (int side = 0; side < 2; ++side) {
@@ -94,10 +101,16 @@ BodyStates find_body_states(const StepProblem& problem, std::span<const double> 
   for (int i = 0; i < problem.body_count(); ++i) {
     if (!bodies.is_needed[i]) continue;
     bodies.mass_factor[i].compute(&problem.mass[36 * i]);
-    bodies.velocity[i] = SplitVector6(ConstVector6(&problem.free_velocity[6 * i]).cast<Real>() +
-                                      bodies.mass_factor[i].solve(bodies.impulse[i]));
+    const Vector6<Real> velocity = ConstVector6(&problem.free_velocity[6 * i]).cast<Real>() +
+                                   bodies.mass_factor[i].solve(bodies.impulse[i]);
+    bodies.velocity[i] = typename BodyStates<Real>::Velocity(velocity);
   }
   return bodies;
 }
+
+template BodyStates<double> find_body_states<double>(const StepProblem&, std::span<const double>,
+                                                     std::span<const char>);
+template BodyStates<Extended> find_body_states<Extended>(const StepProblem&, std::span<const double>,
+                                                         std::span<const char>);
 
 }  // namespace cleave::judging

@@ -1,30 +1,34 @@
-// What impulses make of bodies, for the judge (residual.h) alone: J^T lambda and v = v0 + M^-1 J^T lambda, in
-// extended precision.
+// What impulses make of bodies, for the judge (residual.h) alone: J^T lambda and v = v0 + M^-1 J^T lambda.
+// All is there in two kinds of numbers: Extended, by which the judge decides, and double, for a first look.
 #pragma once
 
 #include <Eigen/Core>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "solver/step_problem.h"
 
 namespace cleave::judging {
 
-// Sums run in extended precision: with a heavy body on a light one, impulses of 1e5 N s per kg cancel in w,
-// and in double the judge would see its own rounding errors.
-using Real = long double;
+// Extended precision: with a heavy body on a light one, impulses of 1e5 N s per kg cancel in w, and in double
+// the judge would see its own rounding errors.
+using Extended = long double;
+
+template <class Real>
 using Vector6 = Eigen::Matrix<Real, 6, 1>;
 using ConstVector6 = Eigen::Map<const Eigen::Matrix<double, 6, 1>>;
 
 // Cholesky's factor of a mass, M = L L^T, without what leading zeros of a row leave zero: of a body about its
 // centre of mass, all between moving and turning.
+template <class Real>
 class MassFactor {
  public:
   MassFactor() {}                    // of nothing yet; its numbers are not worth setting to 0
   void compute(const double* mass);  // (6, 6)
 
   // M^-1 f; NaN where M is not positive definite.
-  Vector6 solve(Vector6 f) const;
+  Vector6<Real> solve(Vector6<Real> f) const;
 
  private:
   Real l_[6][6];
@@ -38,33 +42,49 @@ class MassFactor {
 class SplitVector6 {
  public:
   SplitVector6() {}
-  explicit SplitVector6(const Vector6& numbers);
+  explicit SplitVector6(const Vector6<Extended>& numbers);
   // Not evaluated: it is made where it is used.
-  auto sum() const { return high_.cast<Real>() + low_.cast<Real>(); }
+  auto sum() const { return high_.cast<Extended>() + low_.cast<Extended>(); }
 
  private:
-  Eigen::Matrix<double, 6, 1> high_, low_;
+  Vector6<double> high_, low_;
+};
+
+// Six doubles, read as those are.
+class WholeVector6 {
+ public:
+  WholeVector6() {}
+  explicit WholeVector6(const Vector6<double>& numbers) : numbers_(numbers) {}
+  const Vector6<double>& sum() const { return numbers_; }
+
+ private:
+  Vector6<double> numbers_;
 };
 
 // Of all bodies; those that are not needed have zeros for impulses, and no more. Side by side for each
 // quantity: every row looks at velocities, and few at the factors, which are far larger.
+template <class Real>
 struct BodyStates {
+  using Velocity = std::conditional_t<std::is_same_v<Real, double>, WholeVector6, SplitVector6>;
+
   explicit BodyStates(int bodies)
-      : is_needed(bodies, 0), impulse(bodies, Vector6::Zero()), velocity(bodies), mass_factor(bodies) {}
+      : is_needed(bodies, 0), impulse(bodies, Vector6<Real>::Zero()), velocity(bodies), mass_factor(bodies) {}
 
   std::vector<char> is_needed;
-  std::vector<Vector6> impulse;  // J^T lambda
-  std::vector<SplitVector6> velocity;
-  std::vector<MassFactor> mass_factor;
+  std::vector<Vector6<Real>> impulse;  // J^T lambda
+  std::vector<Velocity> velocity;
+  std::vector<MassFactor<Real>> mass_factor;
 };
 
 // Not evaluated: six numbers of extended precision take longer to store than to make anew.
-inline auto jacobian_block(const StepProblem& problem, int row, int side) {
+template <class Real>
+auto jacobian_block(const StepProblem& problem, int row, int side) {
   return ConstVector6(&problem.jacobian[12 * row + 6 * side]).cast<Real>();
 }
 
 // asked: (m) 1 on rows whose bodies are needed; empty: all are.
-BodyStates find_body_states(const StepProblem& problem, std::span<const double> impulse,
-                            std::span<const char> asked = {});
+template <class Real>
+BodyStates<Real> find_body_states(const StepProblem& problem, std::span<const double> impulse,
+                                  std::span<const char> asked = {});
 
 }  // namespace cleave::judging

@@ -12,7 +12,8 @@ namespace cleave::judging {
 
 // (m), 0 on rows that are not asked for. asked: (m) 1 where a row is, the normal row of a contact without a
 // box for all of its rows; empty: all.
-std::vector<double> find_residuals(const StepProblem& problem, const BodyStates& bodies,
+template <class Real>
+std::vector<double> find_residuals(const StepProblem& problem, const BodyStates<Real>& bodies,
                                    std::span<const double> impulse, std::span<const char> asked = {});
 
 }  // namespace cleave::judging

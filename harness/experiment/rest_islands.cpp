@@ -56,7 +56,8 @@ bool RestIslands::ask_for_islands_at_rest(const StepProblem& problem) {
 // Where a residual is no number, the island is not at rest. Returns whether any moves.
 bool RestIslands::mark_moving(const StepProblem& problem) {
   const double limit = rest_limit_m_per_s(problem);
-  const std::vector<double> residual = row_residuals(problem, problem.warm_impulse, is_at_rest_, velocity_);
+  const std::vector<double> residual =
+      rough_row_residuals(problem, problem.warm_impulse, is_at_rest_, velocity_);
   bool any = false;
   for (int row = 0; row < problem.row_count(); ++row) {
     if (residual[row] <= limit) continue;

@@ -1,5 +1,6 @@
 // Islands at rest: bodies that rows join, on which the impulses of the step before still solve every row, as
-// the judge (solver/residual.h) finds.
+// the judge finds at a first look, in double (rough_row_residuals of solver/residual.h). What rounding hides
+// from it is far less than the limit of an exact answer, and the judge looks at the whole step afterwards.
 #pragma once
 
 #include <vector>

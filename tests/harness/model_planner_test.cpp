@@ -275,7 +275,10 @@ TEST(ModelPlanner, ConesRest) {
 // Whatever the solver, exact or not: with all at rest it is left nothing to do, on any number of threads.
 TEST(ModelPlanner, EverySolverTakesAStepInWhichAllRests) {
   const StepProblem problem = resting_pile(ContactSet::box);
-  const ResidualReport report = judge(problem, problem.warm_impulse);
+  std::vector<double> velocity = problem.free_velocity;
+  rough_row_residuals(problem, problem.warm_impulse, {}, velocity);
+  const std::vector<double> judged = judge(problem, problem.warm_impulse).velocity;
+  for (std::size_t k = 0; k < velocity.size(); ++k) EXPECT_NEAR(velocity[k], judged[k], 1e-14);
   std::vector<std::string> names = all_solver_names();
   std::ranges::copy(chosen_kernel_solvers(), std::back_inserter(names));
   for (const std::string& name : names) {
@@ -296,7 +299,7 @@ TEST(ModelPlanner, EverySolverTakesAStepInWhichAllRests) {
     EXPECT_EQ(counts.passes, 1) << name;
     EXPECT_EQ(summary.factorizations, 0) << name;
     EXPECT_EQ(solution.impulse, problem.warm_impulse) << name;
-    EXPECT_EQ(solution.velocity, report.velocity) << name;
+    EXPECT_EQ(solution.velocity, velocity) << name;
   }
 }
 

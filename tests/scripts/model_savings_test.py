@@ -7,7 +7,7 @@ import unittest
 from stand_in import NOTES_ITS_CALL, StandInCase
 from synthetic import ROOT
 
-from cleave_scripts.measurements.model_savings import CASES, savings, standing_tower
+from cleave_scripts.measurements.model_savings import CASES, laid_chain, savings, standing_tower
 
 STAND_IN = NOTES_ITS_CALL + """from synthetic import write_steps
 write_steps(pathlib.Path(given["--out"]), [
@@ -51,7 +51,8 @@ class ModelSavingsTest(StandInCase):
         self.assertIn("--model auto", calls[1])
         with open(self.directory / "out" / "model_savings.csv", newline="") as file:
             rows = list(csv.DictReader(file))
-        at_rest = {"log tower at rest": 3, "chain drop at rest": 1, "chain drop, heaped": 2}  # steps from the case's first on
+        at_rest = {"log tower at rest": 3, "chain drop at rest": 1, "chain drop, laid out": 2,
+                   "chain drop, heaped": 2}  # steps from the first of the case on
         self.assertEqual(collections.Counter(line["case"] for line in rows),
                          {case: 2 * 2 * at_rest.get(case, 6) for case in CASES})  # the first step has no constraint
         self.assertIn("--steps 600 --measure-every 6", calls[2 * list(CASES).index("log tower at rest")])
@@ -62,6 +63,13 @@ class ModelSavingsTest(StandInCase):
         tower = tomllib.loads((ROOT / "scenarios" / "files" / "log_tower.toml").read_text())
         self.assertTrue(tower.pop("event"))
         self.assertEqual(tomllib.loads(standing_tower()), tower)
+
+    def test_the_laid_chain_is_the_chain_on_a_floor(self):
+        chain = tomllib.loads((ROOT / "scenarios" / "files" / "chain_drop.toml").read_text())
+        self.assertEqual(len(chain.pop("plane")), 4)
+        for body in chain["body"]:
+            body["through_m"] = [[x, y, body["radius_m"]] for x, y, _ in body["through_m"]]
+        self.assertEqual(tomllib.loads(laid_chain()), {"ground": {}, **chain})
 
     def test_options(self):
         self.check_refused((("--rounds", 0), "--rounds is '0'"), (("--steps", 0), "--steps is '0'"))

@@ -161,6 +161,31 @@ TEST(ResidualTest, OnlyWhatIsAskedForIsWritten) {
   EXPECT_GT(bodies_left_alone, 100);
 }
 
+// A first look sees what the judge sees, but for rounding, and writes as little.
+TEST(ResidualTest, ARoughLookDiffersByRoundingAlone) {
+  int rounded = 0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const StepProblem problem = make_small_problem(seed);
+    SeededRandom random(seed);
+    const std::vector<double> impulse = random_impulse(random, problem.row_count());
+    std::vector<char> asked(problem.row_count(), 0);
+    for (char& row : asked) row = random.chance(0.7);
+    std::vector<double> velocity(problem.free_velocity.size(), 7.0), rough_velocity = velocity;
+    const std::vector<double> residuals = row_residuals(problem, impulse, asked, velocity),
+                              rough = rough_row_residuals(problem, impulse, asked, rough_velocity);
+    const double speed =
+        *std::ranges::max_element(velocity, {}, [](double entry) { return std::abs(entry); });
+    for (int row = 0; row < problem.row_count(); ++row) {
+      EXPECT_NEAR(rough[row], residuals[row], 1e-13 * (1 + residuals[row] + std::abs(speed)))
+          << "seed " << seed;
+      rounded += rough[row] != residuals[row];
+    }
+    for (std::size_t k = 0; k < velocity.size(); ++k)
+      EXPECT_NEAR(rough_velocity[k], velocity[k], 1e-13 * (1 + std::abs(speed))) << "seed " << seed;
+  }
+  EXPECT_GT(rounded, 100);
+}
+
 TEST(ResidualTest, MassThatIsNotPositiveDefiniteIsNeverExact) {
   StepProblem problem = make_small_problem(0);
   const std::vector<double> impulse = solve_by_enumeration(problem).impulse;

@@ -15,9 +15,11 @@ class Case:
     steps: int | None = None  # None: as many as are asked for
 
 
-# The tower of the scene log_tower, whose ball is never let go. Friction with compliance creeps, so that a heap which it holds
-# never rests: the chain does without it.
+# Scenes as files, made of those that the project keeps: the tower of log_tower, whose ball is never let go, and the chain of
+# chain_drop, laid out on the floor. Friction with compliance creeps, so that a heap which it holds never rests: the chain that
+# has dropped does without it.
 STANDING_TOWER = "standing_tower.toml"
+LAID_CHAIN = "laid_chain.toml"
 CASES = {
     "chain drop": Case(("--scene", "chain_drop")),
     "log tower": Case(("--scene", "log_tower")),
@@ -29,15 +31,30 @@ CASES = {
     "mixed site": Case(("--scene", "mixed_site", *MECHANISM_OPTIONS)),
     "log tower at rest": Case(("--scene", "file@path=" + STANDING_TOWER), 300, 600),
     "chain drop at rest": Case(("--scene", "chain_drop", "--mu", 0), 16000, 16500),
+    "chain drop, laid out": Case(("--scene", "file@path=" + LAID_CHAIN), 1200, 1500),
     "chain drop, heaped": Case(("--scene", "chain_drop"), 3000, 3500),
 }
 KEY = ("case", "bodies", "mu")
 
 
+def _scene_file(name):
+    return (ROOT / "scenarios" / "files" / name).read_text()
+
+
+def _without(tables, text):
+    return re.sub(rf"^\[\[{tables}\]\]\n(?:(?!\[).*\n?)*", "", text, flags=re.MULTILINE)
+
+
 def standing_tower():
     """Text of a scene file: that of log_tower without its events."""
-    text = (ROOT / "scenarios" / "files" / "log_tower.toml").read_text()
-    return re.sub(r"^\[\[event\]\]\n(?:(?!\[).*\n?)*", "", text, flags=re.MULTILINE)
+    return _without("event", _scene_file("log_tower.toml"))
+
+
+def laid_chain():
+    """Text of a scene file: that of chain_drop with a floor for its funnel, the chain lying on it."""
+    text = _without("plane", _scene_file("chain_drop.toml"))
+    radius_m = re.search(r"^radius_m = (\S+)$", text, flags=re.MULTILINE)[1]
+    return "[ground]\n" + re.sub(r", 2\](,?)$", rf", {radius_m}]\1", text, flags=re.MULTILINE)
 
 
 @dataclasses.dataclass(frozen=True)
