@@ -96,36 +96,32 @@ int Coarsening::match(const LevelGraph& graph, int most_bodies, int begin, std::
 
 void Coarsening::contract(const LevelGraph& graph, std::span<const int> coarse_of_node, int coarse_nodes,
                           LevelGraph& coarse) {
-  lowest_.assign(coarse_nodes, -1);
-  slot_.assign(coarse_nodes, -1);
-  coarse.bodies.assign(coarse_nodes, 0);
-  coarse.first.resize(coarse_nodes + 1);
-  coarse.neighbour.resize(graph.neighbour.size());
-  coarse.weight.resize(graph.neighbour.size());
-  int end = 0;
-  const auto add = [&](int node, int own, int from) {
-    coarse.bodies[own] += graph.bodies[node];
-    for (int k = graph.first[node]; k < graph.first[node + 1]; ++k) {
-      const int other = coarse_of_node[graph.neighbour[k]];
-      if (other == own) continue;
-      if (slot_[other] < from) {
-        slot_[other] = end;
-        coarse.neighbour[end] = other;
-        coarse.weight[end++] = graph.weight[k];
-      } else {
-        coarse.weight[slot_[other]] += graph.weight[k];
-      }
-    }
-  };
-  // A pair is met first at its lower node; the higher one is found among that one's neighbours.
+  // A pair is met first at its lower node.
+  pair_.assign(coarse_nodes, {-1, -1});
   for (int node = 0; node < graph.node_count(); ++node) {
-    const int own = coarse_of_node[node];
-    if (lowest_[own] >= 0) continue;
-    lowest_[own] = node;
+    std::array<int, 2>& pair = pair_[coarse_of_node[node]];
+    pair[pair[0] >= 0] = node;
+  }
+  const std::size_t half_edges = graph.neighbour.size();
+  coarse.resize(coarse_nodes, half_edges + 1);
+  slot_.assign(coarse_nodes, -1);
+  int end = 0;
+  for (int own = 0; own < coarse_nodes; ++own) {
     const int from = coarse.first[own] = end;
-    add(node, own, from);
-    for (const int other : graph.neighbours(node)) {
-      if (other > node && coarse_of_node[other] == own) add(other, own, from);
+    coarse.bodies[own] = 0;
+    for (const int node : pair_[own]) {
+      if (node < 0) continue;
+      coarse.bodies[own] += graph.bodies[node];
+      // Without branches, which nothing would predict: an edge within the pair is written behind all others.
+      for (int k = graph.first[node]; k < graph.first[node + 1]; ++k) {
+        const int other = coarse_of_node[graph.neighbour[k]];
+        const bool inside = other == own, is_new = slot_[other] < from;
+        const std::size_t place = inside ? half_edges : is_new ? end : slot_[other];
+        coarse.neighbour[place] = other;
+        coarse.weight[place] = (is_new ? 0 : coarse.weight[place]) + graph.weight[k];
+        slot_[other] = is_new && !inside ? end : slot_[other];
+        end += is_new && !inside;
+      }
     }
   }
   coarse.first[coarse_nodes] = end;

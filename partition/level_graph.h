@@ -33,7 +33,6 @@ struct LevelGraph {
   void split(std::span<const char> side, std::array<LevelGraph, 2>& halves,
              std::array<std::vector<int>, 2>& nodes, std::vector<int>& place) const;
 
- private:
   void resize(int nodes, std::size_t half_edges);
 };
 
@@ -53,7 +52,8 @@ class Coarsening {
 
  private:
   std::vector<int> degree_first_, order_, mate_;  // of match()
-  std::vector<int> lowest_, slot_;                // by coarse node
+  std::vector<std::array<int, 2>> pair_;          // of nodes, by coarse node; -1 for none
+  std::vector<int> slot_;                         // by coarse node
 };
 
 }  // namespace cleave

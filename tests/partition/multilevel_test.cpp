@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "partition/bisection.h"
+#include "partition/level_moves.h"
 #include "partition/registry.h"
 #include "tests/partition/test_graphs.h"
 
@@ -107,6 +108,91 @@ TEST(LevelGraph, splits_into_the_edges_of_both_sides) {
       for (const int node : nodes[s]) EXPECT_EQ(side[node], s);
     }
   }
+}
+
+// Nodes of one and two bodies, in parts as they fall.
+struct RandomParts {
+  LevelGraph graph;
+  int part_count;
+  std::vector<int> part_of_node;
+
+  explicit RandomParts(std::uint64_t seed) {
+    Random random(seed);
+    const LevelGraph fine = level_graph(random_bodies(seed).graph());
+    std::vector<int> coarse_of_node;
+    Coarsening coarsening;
+    coarsening.contract(fine, coarse_of_node, coarsening.match(fine, 2, 0, coarse_of_node), graph);
+    part_count = random.integer(1, 6);
+    for (int node = 0; node < graph.node_count(); ++node)
+      part_of_node.push_back(node < part_count ? node : random.integer(0, part_count - 1));
+  }
+
+  long cut() const {
+    long twice = 0;
+    for (int node = 0; node < graph.node_count(); ++node)
+      for (int k = graph.first[node]; k < graph.first[node + 1]; ++k)
+        twice += part_of_node[node] != part_of_node[graph.neighbour[k]] ? graph.weight[k] : 0;
+    return twice / 2;
+  }
+
+  std::vector<int> bodies_of_parts() const {
+    std::vector<int> bodies(part_count, 0);
+    for (int node = 0; node < graph.node_count(); ++node) bodies[part_of_node[node]] += graph.bodies[node];
+    return bodies;
+  }
+
+  // By a count of both cuts.
+  long least_cut_of_a_move() const {
+    long least = cut();
+    for (int node = 0; node < graph.node_count(); ++node) {
+      const int own = part_of_node[node];
+      if (std::ranges::count(part_of_node, own) == 1) continue;  // a part keeps a node
+      for (int part = 0; part < part_count; ++part) {
+        RandomParts moved = *this;
+        moved.part_of_node[node] = part;
+        least = std::min(least, moved.cut());
+      }
+    }
+    return least;
+  }
+};
+
+// Run again, as what was the last node of its part when it was due may have company by the end.
+TEST(LevelMoves, end_where_no_move_lowers_the_cut) {
+  int lowered = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    RandomParts parts(seed);
+    const long before = parts.cut();
+    LevelMoves moves(parts.part_count, parts.graph.body_count());
+    std::vector<int> last;
+    while (last != parts.part_of_node) {
+      last = parts.part_of_node;
+      moves.run(parts.graph, parts.part_of_node);
+    }
+    EXPECT_EQ(parts.least_cut_of_a_move(), parts.cut()) << "seed " << seed;
+    EXPECT_LE(parts.cut(), before);
+    lowered += parts.cut() < before;
+  }
+  EXPECT_GT(lowered, 100);
+}
+
+TEST(LevelMoves, keep_bounds_and_empty_no_part) {
+  int at_bound = 0;
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    RandomParts parts(seed);
+    const std::vector<int> before = parts.bodies_of_parts();
+    const int most = parts.graph.body_count() / parts.part_count + 2;
+    const long cut_before = parts.cut();
+    LevelMoves(parts.part_count, most).run(parts.graph, parts.part_of_node);
+    EXPECT_LE(parts.cut(), cut_before) << "seed " << seed;
+    const std::vector<int> after = parts.bodies_of_parts();
+    for (int part = 0; part < parts.part_count; ++part) {
+      EXPECT_LE(after[part], std::max(most, before[part])) << "seed " << seed;
+      EXPECT_EQ(after[part] > 0, before[part] > 0) << "seed " << seed;
+      at_bound += after[part] == most;
+    }
+  }
+  EXPECT_GT(at_bound, 50);
 }
 
 // The cut that is kept up to date by gains is the one counted from scratch, and bounds are kept.
