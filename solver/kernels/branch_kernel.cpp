@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "solver/lasting_bodies.h"
+
 namespace cleave {
 
 void BranchKernel::bind(const PreparedStep& step) {
@@ -19,9 +21,25 @@ void BranchKernel::choose_separators(const PreparedStep& step, const Parts& part
   stages.first_of_interface = separators_.part_count();
 }
 
+// In every part; its stage becomes two.
+void BranchKernel::put_lasting_bodies_first(const PreparedStep& step) {
+  if (!find_lasting_bodies(step, lasting_)) return;
+  const int parts = stages_.first_of_interface;
+  stages_.of_body.resize(step.body_count(), 0);
+  for (int body = 0; body < step.body_count(); ++body) {
+    int& stage = stages_.of_body[body];
+    stage = stage >= parts ? stage + parts : 2 * stage + (lasting_[body] == 0);
+  }
+  stages_.count += parts;
+  stages_.first_of_interface += parts;
+}
+
 void BranchKernel::analyze(const PreparedStep& step, const Parts& parts, ParallelTasks& tasks) {
   StageTimer timer(tasks.clock(), Stage::analyze);
+  stages_.of_body.clear();
+  stages_.count = stages_.first_of_interface = 1;
   choose_stages(step, parts, stages_);
+  put_lasting_bodies_first(step);
   interface_bodies_ = static_cast<int>(
       std::ranges::count_if(stages_.of_body, [this](int s) { return s >= stages_.first_of_interface; }));
   const bool analyzed = matrix_.analyze_whole(step, stages_.of_body, stages_.count,
@@ -39,7 +57,7 @@ void BranchKernel::request_memory(const PreparedStep& step, ParallelTasks& tasks
   separators_.count(memory);
   substitution_.count(memory);
   for (const FactorTasks* factor : {&local_tasks_, &interface_tasks_}) factor->count(memory);
-  memory.add_grown(stages_.of_body, changed_, factored_);
+  memory.add_grown(stages_.of_body, lasting_, changed_, factored_);
   memory.add<double>(12, step.groups().size());
   memory.add<double>(6, step.body_count());
   if (step.set().has_blocks()) memory.add<double>(12, step.row_count());

@@ -11,7 +11,7 @@
 //
 // Strategies that end near the solution change few weights from one factorisation to the next. Only branches
 // with a changed row, and those above them, are made anew; the others stand as they are, and the factor has
-// the bytes of a whole one.
+// the bytes of a whole one. In each part bodies on which no row will change come first (lasting_bodies.h).
 #pragma once
 
 #include <span>
@@ -55,6 +55,7 @@ class BranchKernel : public Kernel {
   void choose_separators(const PreparedStep& step, const Parts& parts, Stages& stages);
 
  private:
+  void put_lasting_bodies_first(const PreparedStep& step);
   void bind(const PreparedStep& step);
   void list_tasks(int threads);
   void find_changed(const RowWeights& weights, const RowWork& before, ParallelTasks& tasks);
@@ -64,6 +65,7 @@ class BranchKernel : public Kernel {
 
   const PreparedStep* step_ = nullptr;
   Stages stages_;
+  std::vector<char> lasting_;  // by body
   Separators separators_;
   BodySystem system_;
   BlockMatrix matrix_;
