@@ -60,7 +60,7 @@ void FactorTasks::list(const BlockSymbolic& symbolic, std::span<const int> branc
 // ones are the solves of the panel's last column, which wait for all others.
 void FactorTasks::list_front(const BlockSymbolic& symbolic, int branch, int assembly) {
   const FrontStrips strips(symbolic.supernodes()[symbolic.branches()[branch].last]);
-  const TileSchedule schedule(strips.count(), strips.own());
+  const TileSchedule schedule(strips.count(), strips.own(), strips.joined_steps());
   const int first_gather = task_count(), first_tile = first_gather + strips.own();
   for (int strip = 0; strip < strips.own(); ++strip) {
     const double place = static_cast<double>(strip) / strips.own();

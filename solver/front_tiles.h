@@ -18,6 +18,7 @@ class FrontStrips {
   explicit FrontStrips(const Supernode& s);
   int own() const { return own_; }
   int count() const { return own_ + below_; }
+  int joined_steps() const;  // of its TileSchedule
   int begin(int strip) const;
   int end(int strip) const { return begin(strip + 1); }
 

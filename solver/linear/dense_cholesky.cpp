@@ -149,7 +149,7 @@ bool DenseCholesky::factor(ParallelTasks& tasks) {
   const Schedule& schedule = this->schedule();
   std::atomic<bool> positive = true;
   tasks.run(Stage::factor_interface, schedule.graph, [&](int index) {
-    const auto [step, row, column] = schedule.tiles.operations()[index];
+    const auto [step, row, column, steps] = schedule.tiles.operations()[index];
     check_stop(tasks.stop());
     if (!positive) return;
     if (column > step) {

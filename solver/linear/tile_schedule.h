@@ -10,6 +10,10 @@
 // panel. The diagonal block that the next step begins with comes first in every step, and its factorisation
 // next, so that it is long done when the solves below it, last in the step, are reached (look-ahead;
 // Strazdins 1998). On any number of threads every block sees the same operations in the same order.
+//
+// Where blocks are many they do not stay in a cache from one step to the next, and to read and write a block
+// for a single product takes what memory gives: blocks whose turn is far off then wait for several steps, and
+// are updated by all of these in one operation.
 #pragma once
 
 #include <utility>
@@ -18,15 +22,17 @@
 namespace cleave {
 
 // What a step does to one block: a diagonal block (row = column = step) is factored, those below it are
-// solved for, all others are updated.
+// solved for, all others are updated, by steps step .. step + steps - 1.
 struct TileOperation {
   int step, row, column;
+  int steps = 1;
 };
 
 class TileSchedule {
  public:
-  // columns: those that are listed, of as many steps.
-  TileSchedule(int blocks, int columns);
+  // columns: those that are listed, of as many steps. joined_steps: that update a block in one operation; the
+  // last steps before its turn, fewer than twice as many, do so one by one, as the next block waits for them.
+  TileSchedule(int blocks, int columns, int joined_steps = 1);
 
   // Each comes after all that it needs.
   const std::vector<TileOperation>& operations() const { return operations_; }
@@ -40,6 +46,7 @@ class TileSchedule {
 
  private:
   void list(const TileOperation& operation);
+  void list_updates(int step, int column, int first_row, int blocks, int joined_steps);
 
   std::vector<TileOperation> operations_;
   std::vector<std::pair<int, int>> waits_;
