@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "solver/body_system.h"
+#include "solver/front_tiles.h"
 #include "tests/solver/problem_makers.h"
 
 namespace cleave {
@@ -15,7 +17,8 @@ namespace {
 
 class FactorTasksTest : public testing::Test {
  protected:
-  FactorTasksTest() {
+  explicit FactorTasksTest(StepProblem problem = make_pile(11, {.columns = 7, .rows = 7, .layers = 7}))
+      : problem_(std::move(problem)) {
     step_.prepare(problem_);
     matrix_.analyze_whole(step_, {}, 1, BlockSymbolic::kAnyBlocks);
     matrix_.allocate();
@@ -39,7 +42,7 @@ class FactorTasksTest : public testing::Test {
     return factored;
   }
 
-  const StepProblem problem_ = make_pile(11, {.columns = 7, .rows = 7, .layers = 7});
+  const StepProblem problem_;
   std::vector<double> d_;
   PreparedStep step_;
   BlockMatrix matrix_;
@@ -104,6 +107,32 @@ TEST_F(FactorTasksTest, GiveTheSameBytesInAnyOrder) {
       EXPECT_EQ(panels(), first) << threads << " threads, order " << seed;
     }
   }
+}
+
+// So many bodies joined at random that their last front is updated by several steps at once.
+class LargestFrontTest : public FactorTasksTest {
+ protected:
+  LargestFrontTest() : FactorTasksTest(make_chain(5, {.links = 480, .extra_joints = 12000, .cfm = 1e-2})) {}
+};
+
+TEST_F(LargestFrontTest, HasTheFactorOfTheWholeAndTheSameBytesInAnyOrder) {
+  const auto joins_steps = [](const Supernode& s) { return FrontStrips(s).joined_steps() > 1; };
+  ASSERT_TRUE(std::ranges::any_of(symbolic().supernodes(), joins_steps));
+  matrix_.assemble(system_.rows());
+  ASSERT_TRUE(matrix_.factor());
+  const std::vector<double> whole = panels();
+  const double largest = *std::ranges::max_element(whole);
+  StageClock clock(2);
+  std::vector<double> first;
+  for (const int threads : {1, 2, 3}) {
+    WorkerTeam::shared(threads).shuffle(threads);
+    ParallelTasks tasks(clock, threads);
+    EXPECT_EQ(std::ranges::count(run(tasks), 0), 0);
+    WorkerTeam::shared(threads).shuffle(0);
+    if (first.empty()) first = panels();
+    EXPECT_EQ(panels(), first) << threads << " threads";
+  }
+  for (std::size_t k = 0; k < whole.size(); ++k) ASSERT_NEAR(first[k], whole[k], 1e-12 * largest) << k;
 }
 
 // The front with the bad pivot and what is above it, and nothing else.
