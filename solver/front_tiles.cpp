@@ -12,8 +12,8 @@ namespace {
 // in what it costs to hand them out, nor so thick that its tiles do not fit in a core's cache.
 constexpr int kStrips = 12, kLeastStrip = 8, kMostStrip = 16;
 
-// A front of more strips does not stay in the caches from step to step. Eight and sixteen steps at once are no
-// faster than four, in a silo of 27 000 on two threads.
+// A front of more strips does not stay in the caches from step to step. Eight and sixteen steps at once are
+// no faster than four, in a silo of 27 000 on two threads.
 constexpr int kStripsThatStay = 24, kJoinedSteps = 4;
 
 int strips_of(int blocks, int strip) { return ceil_div(blocks, strip); }
