@@ -46,9 +46,7 @@ long Bisection::run(const LevelGraph& graph, int wanted, std::array<int, 2> most
   const int coarsest = coarsen(graph, dice);
   long cut = start(coarsest == 0 ? graph : levels_[coarsest], wanted, dice, side);
   for (int k = coarsest - 1; k >= 0; --k) {
-    finer_.resize(coarse_of_node_[k].size());
-    for (std::size_t node = 0; node < finer_.size(); ++node) finer_[node] = side[coarse_of_node_[k][node]];
-    side.swap(finer_);
+    give_to_finer(coarse_of_node_[k], side, finer_);
     cut = refine(k == 0 ? graph : levels_[k], side).cut;
   }
   return cut;

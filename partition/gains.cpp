@@ -6,26 +6,10 @@
 namespace cleave {
 
 std::span<const MoveGain> MoveGains::of(int body, std::span<const int> part_of_body) {
-  gains_.clear();
-  int inside = 0;
-  for (int k = graph_.first(body); k < graph_.last(body); ++k) {
-    const int part = part_of_body[graph_.neighbour(k)];
-    const int weight = graph_.weight(k, unit_);
-    if (part == part_of_body[body]) {
-      inside += weight;
-      continue;
-    }
-    if (slot_[part] < 0) {
-      slot_[part] = static_cast<int>(gains_.size());
-      gains_.push_back({part, 0});
-    }
-    gains_[slot_[part]].gain += weight;
-  }
-  for (MoveGain& move : gains_) {
-    slot_[move.part] = -1;
-    move.gain -= inside;
-  }
-  return gains_;
+  return gains_.of(
+      part_of_body[body], graph_.first(body), graph_.last(body),
+      [&](int k) { return part_of_body[graph_.neighbour(k)]; },
+      [&](int k) { return graph_.weight(k, unit_); });
 }
 
 int edge_weight(const BodyGraph& graph, int a, int b, EdgeWeight unit) {

@@ -23,11 +23,46 @@ struct MoveGain {
   int gain;  // D_i(B)
 };
 
-// Computes D_i(B) of one body for every B adjacent to it, O(degree).
+// Computes D_i(B) of one node for every B adjacent to it, O(degree).
+class PartGains {
+ public:
+  explicit PartGains(int part_count) : slot_(part_count, -1) {}
+
+  // Of a node of part `own` with the edges first .. last - 1: part(k) is what edge k leads into, weight(k)
+  // its weight. In the order of the first edge into each part; valid until the next call.
+  template <class Part, class Weight>
+  std::span<const MoveGain> of(int own, int first, int last, const Part& part, const Weight& weight) {
+    gains_.clear();
+    int inside = 0;
+    for (int k = first; k < last; ++k) {
+      const int to = part(k);
+      if (to == own) {
+        inside += weight(k);
+        continue;
+      }
+      if (slot_[to] < 0) {
+        slot_[to] = static_cast<int>(gains_.size());
+        gains_.push_back({to, 0});
+      }
+      gains_[slot_[to]].gain += weight(k);
+    }
+    for (MoveGain& move : gains_) {
+      slot_[move.part] = -1;
+      move.gain -= inside;
+    }
+    return gains_;
+  }
+
+ private:
+  std::vector<int> slot_;  // (parts): place of a part in gains_, -1 between calls
+  std::vector<MoveGain> gains_;
+};
+
+// The same of bodies.
 class MoveGains {
  public:
   MoveGains(const BodyGraph& graph, EdgeWeight unit, int part_count)
-      : graph_(graph), unit_(unit), slot_(part_count, -1) {}
+      : graph_(graph), unit_(unit), gains_(part_count) {}
 
   // In the order of the first neighbour in each part; valid until the next call.
   std::span<const MoveGain> of(int body, std::span<const int> part_of_body);
@@ -35,8 +70,7 @@ class MoveGains {
  private:
   const BodyGraph& graph_;
   const EdgeWeight unit_;
-  std::vector<int> slot_;  // (parts): place of a part in gains_, -1 between calls
-  std::vector<MoveGain> gains_;
+  PartGains gains_;
 };
 
 // w_ab, 0 when the bodies are not adjacent.

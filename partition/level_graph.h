@@ -36,6 +36,14 @@ struct LevelGraph {
   void resize(int nodes, std::size_t half_edges);
 };
 
+// What the coarse nodes have, of_node (coarse nodes), becomes what the nodes have that were joined to them.
+template <class T>
+void give_to_finer(std::span<const int> coarse_of_node, std::vector<T>& of_node, std::vector<T>& scratch) {
+  scratch.resize(coarse_of_node.size());
+  for (std::size_t node = 0; node < scratch.size(); ++node) scratch[node] = of_node[coarse_of_node[node]];
+  of_node.swap(scratch);
+}
+
 // Joins nodes of a graph; keeps its memory.
 class Coarsening {
  public:

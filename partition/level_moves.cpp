@@ -10,32 +10,13 @@ void LevelMoves::queue_up(int node) {
   queue_.push_back(node);
 }
 
-// Fills neighbours_; returns the weight of the edges into the node's own part.
-int LevelMoves::weigh_parts(const LevelGraph& graph, int node, const std::vector<int>& part_of_node) {
-  int inside = 0;
-  neighbours_.clear();
-  for (int k = graph.first[node]; k < graph.first[node + 1]; ++k) {
-    const int part = part_of_node[graph.neighbour[k]];
-    if (part == part_of_node[node]) {
-      inside += graph.weight[k];
-    } else if (slot_[part] < 0) {
-      slot_[part] = static_cast<int>(neighbours_.size());
-      neighbours_.push_back({part, graph.weight[k]});
-    } else {
-      neighbours_[slot_[part]].weight += graph.weight[k];
-    }
-  }
-  for (const Neighbour& neighbour : neighbours_) slot_[neighbour.part] = -1;
-  return inside;
-}
-
 // -1 for none.
-int LevelMoves::best_part(int node_bodies, int inside) const {
-  int best = -1, best_weight = inside;
-  for (const auto& [part, weight] : neighbours_) {
+int LevelMoves::best_part(int node_bodies, std::span<const MoveGain> gains) const {
+  int best = -1, best_gain = 0;
+  for (const auto& [part, gain] : gains) {
     if (bodies_[part] + node_bodies > most_bodies_) continue;
     const bool is_fewer = best >= 0 && bodies_[part] < bodies_[best];
-    if (weight > best_weight || (weight == best_weight && is_fewer)) best = part, best_weight = weight;
+    if (gain > best_gain || (gain == best_gain && is_fewer)) best = part, best_gain = gain;
   }
   return best;
 }
@@ -44,7 +25,10 @@ void LevelMoves::visit(const LevelGraph& graph, int node, std::vector<int>& part
   waits_[node] = 0;
   const int own = part_of_node[node], node_bodies = graph.bodies[node];
   if (bodies_[own] == node_bodies) return;
-  const int best = best_part(node_bodies, weigh_parts(graph, node, part_of_node));
+  const std::span<const MoveGain> gains = gains_.of(
+      own, graph.first[node], graph.first[node + 1], [&](int k) { return part_of_node[graph.neighbour[k]]; },
+      [&](int k) { return graph.weight[k]; });
+  const int best = best_part(node_bodies, gains);
   if (best < 0) return;
   bodies_[own] -= node_bodies;
   bodies_[best] += node_bodies;

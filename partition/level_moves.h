@@ -5,15 +5,17 @@
 //
 // Nodes at the cut queue up, in their order. One that is due moves to the part B beside it of greatest
 //
-//     gain = sum of w_ij over j in B - sum of w_ij over the other j in its own part,
+//     D_i(B) = sum of w_ij over j in B - sum of w_ij over the other j in its own part    (gains.h),
 //
 // ties to the part of fewer bodies, if that is positive, B stays within its bound and its own part keeps a
 // node; its neighbours outside B then queue up again. Every move lowers the cut, so this ends. Who found no
 // room when it was due does not wait for it.
 #pragma once
 
+#include <span>
 #include <vector>
 
+#include "partition/gains.h"
 #include "partition/level_graph.h"
 
 namespace cleave {
@@ -21,28 +23,21 @@ namespace cleave {
 class LevelMoves {
  public:
   // most_bodies: of a part. One above it may shrink but not grow.
-  LevelMoves(int parts, int most_bodies) : most_bodies_(most_bodies), bodies_(parts), slot_(parts, -1) {}
+  LevelMoves(int parts, int most_bodies) : most_bodies_(most_bodies), bodies_(parts), gains_(parts) {}
 
   // part_of_node: (nodes).
   void run(const LevelGraph& graph, std::vector<int>& part_of_node);
 
  private:
-  struct Neighbour {
-    int part;
-    int weight;  // of the edges into it
-  };
-
   void queue_up(int node);
   void visit(const LevelGraph& graph, int node, std::vector<int>& part_of_node);
-  int weigh_parts(const LevelGraph& graph, int node, const std::vector<int>& part_of_node);
-  int best_part(int node_bodies, int inside) const;
+  int best_part(int node_bodies, std::span<const MoveGain> gains) const;
 
   int most_bodies_;
   std::vector<int> bodies_;  // by part
   std::vector<int> queue_;
-  std::vector<char> waits_;            // by node
-  std::vector<Neighbour> neighbours_;  // parts beside the node that is due
-  std::vector<int> slot_;              // by part: its place there, -1 between nodes
+  std::vector<char> waits_;  // by node
+  PartGains gains_;
 };
 
 }  // namespace cleave

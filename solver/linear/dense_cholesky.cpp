@@ -153,7 +153,7 @@ bool DenseCholesky::factor(ParallelTasks& tasks) {
     check_stop(tasks.stop());
     if (!positive) return;
     if (column > step) {
-      update(step, row, column);
+      for (int k = step; k < step + steps; ++k) update(k, row, column);
     } else if (row > step) {
       solve_below(step, row);
     } else if (!factor_diagonal(step)) {
