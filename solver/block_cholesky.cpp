@@ -86,12 +86,8 @@ void BlockCholesky::add_update(const Supernode& child, const Supernode& parent, 
     for (int row = std::max(first_row, column); row < last_row;) {
       int end = row + 1;
       while (end < last_row && target[end] == target[end - 1] + 1) ++end;
-      const double* from = update + 6L * column * ld + 6 * row;
-      double* into = block + 6 * (target[row] - shift);
-      const int length = 6 * (end - row);
-      for (int c = 0; c < 6; ++c, from += ld, into += to_ld) {
-        for (int k = 0; k < length; ++k) into[k] += from[k];
-      }
+      add_columns(6 * (end - row), 6, update + 6L * column * ld + 6 * row, ld,
+                  block + 6 * (target[row] - shift), to_ld);
       row = end;
     }
   }
@@ -126,27 +122,14 @@ FrontTiles BlockCholesky::front(int supernode) {
   return {s, panels_.data() + s.panel_offset, updates_.data() + s.update_offset};
 }
 
-bool BlockCholesky::factor_panel(const Supernode& s) {
-  const int ld = 6 * s.row_count;
-  double* panel = panels_.data() + s.panel_offset;
-  if (!eliminate_columns(s.row_count, s.width, panel, ld)) return false;
-  const int below = s.rows_below(), update_ld = 6 * below;
-  const double* rows = panel + 6 * s.width;
+// Of its own columns: -L21 L21^T, the lower triangle of blocks; nobody looks at the rest.
+void BlockCholesky::begin_update(const Supernode& s) {
+  const int ld = 6 * s.row_count, below = s.rows_below(), update_ld = 6 * below;
+  const double* rows = panel(s) + 6 * s.width;
   double* update = updates_.data() + s.update_offset;
   for (int k = 0; k < below; ++k) {
-    subtract_product(update_ld - 6 * k, 6 * s.width, rows + 6 * k, ld, rows + 6 * k, ld,
-                     update + 6 * k + 6L * k * update_ld, update_ld);
-  }
-  return true;
-}
-
-// The lower triangle of blocks; nobody looks at the rest.
-void BlockCholesky::set_update_zero(const Supernode& s) {
-  const long ld = 6 * s.rows_below();
-  double* update = updates_.data() + s.update_offset;
-  for (long c = 0; c < ld; ++c) {
-    const long first = c / 6 * 6;
-    std::fill(update + c * ld + first, update + (c + 1) * ld, 0.0);
+    write_negative_product(update_ld - 6 * k, 6 * s.width, rows + 6 * k, ld, rows + 6 * k, ld,
+                           update + 6 * k + 6L * k * update_ld, update_ld);
   }
 }
 
@@ -154,9 +137,11 @@ bool BlockCholesky::factor(int branch_index) {
   const Branch& branch = symbolic_.branches()[branch_index];
   for (int i = branch.first; i <= branch.last; ++i) {
     const Supernode& s = symbolic_.supernodes()[i];
-    set_update_zero(s);
-    add_updates(i, {0, s.row_count, 0, s.row_count});
-    if (!factor_panel(s)) return false;
+    add_updates(i, {0, s.row_count, 0, s.width});
+    if (!eliminate_columns(s.row_count, s.width, panels_.data() + s.panel_offset, 6 * s.row_count))
+      return false;
+    begin_update(s);
+    add_updates(i, {s.width, s.row_count, s.width, s.row_count});
   }
   return true;
 }

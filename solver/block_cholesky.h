@@ -1,7 +1,8 @@
 // Numeric Cholesky factorisation H = L L^T of a sparse matrix of 6x6 blocks, multifrontal on supernodes.
 //
-// Each supernode owns a dense panel (its columns, all its rows). It adds the update matrices of its children,
-// factors its columns and leaves its own update matrix U -= L21 L21^T to its parent (Duff and Reid 1983). The
+// Each supernode owns a dense panel (its columns, all its rows). It adds what its children left to it, factors
+// its columns and leaves its own update matrix to its parent, U = -L21 L21^T and what its children left to the
+// rows below (Duff and Reid 1983). The
 // inverse of every 6x6 diagonal block of L is stored in the place of the block. Right-hand sides are (n, 6)
 // by node.
 #pragma once
@@ -76,8 +77,7 @@ class BlockCholesky {
   };
   void add_update(const Supernode& child, const Supernode& parent, const Range& range);
   void add_updates(int supernode, const Range& range);
-  void set_update_zero(const Supernode& s);
-  bool factor_panel(const Supernode& s);
+  void begin_update(const Supernode& s);
 
   BlockSymbolic symbolic_;
   std::vector<double> panels_, updates_;

@@ -178,8 +178,9 @@ void BlockMatrix::add_entry(const Entry& entry, const WeightedRows& rows) {
   const RowGroup& group = step_->groups()[entry.group];
   double* panels = cholesky_.panels();
   double gram[144];
-  const bool any = weighted_gram(group.row_count, rows.jacobian() + 12L * group.first_row,
-                                 rows.d().data() + group.first_row, gram);
+  const bool any =
+      weighted_gram(entry.has_b() ? 2 : 1, group.row_count, rows.jacobian() + 12L * group.first_row,
+                    rows.d().data() + group.first_row, gram);
   if (entry.late >= 0) late_any_[entry.late] = any;
   if (!any) return;
   const auto add = [&](const BlockCholesky::Place& place, const double* block) {
@@ -199,9 +200,7 @@ void BlockMatrix::assemble(const WeightedRows& rows, int branch) {
     const int local = branch_locals_[k];
     const BlockCholesky::Place place = cholesky_.place(local, local);
     const double* mass = step_->problem().mass.data() + 36L * bodies_[local];
-    for (int c = 0; c < 6; ++c) {
-      for (int r = 0; r < 6; ++r) panels[place.offset + r + c * place.leading_dimension] += mass[r + 6 * c];
-    }
+    add_block(panels + place.offset, place.leading_dimension, mass, 6, false);
   }
   if (!is_placed_[branch]) place_entries(branch);
   for (int i = entry_first_[branch]; i < entry_first_[branch + 1]; ++i) add_entry(entries_[i], rows);

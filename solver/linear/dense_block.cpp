@@ -8,7 +8,7 @@ namespace cleave {
 bool eliminate_columns(int rows, int columns, double* a, int lda) {
   for (int k = 0; k < columns; ++k) {
     double* diagonal = a + 6 * k + 6L * k * lda;
-    subtract_product(6 * (rows - k), 6 * k, a + 6 * k, lda, a + 6 * k, lda, diagonal, lda);
+    if (k > 0) subtract_product(6 * (rows - k), 6 * k, a + 6 * k, lda, a + 6 * k, lda, diagonal, lda);
     if (!invert_cholesky<6>(diagonal, lda, diagonal, lda)) return false;
     multiply_by_transpose(6 * (rows - k - 1), diagonal, lda, diagonal + 6, lda);
   }
@@ -53,24 +53,36 @@ void subtract_transpose_vector(int rows, int columns, const double* a, int lda, 
   }
 }
 
-// Whole columns are vectors.
+// Whole columns are vectors, of which every second one goes into another sum.
 void multiply_lower(const double* w, int ldw, double* x) {
-  Vector<4> top = {};
-  Vector<2> bottom = {};
+  Vector<4> top[2] = {};
+  Vector<2> bottom[2] = {};
   for (int c = 0; c < 6; ++c, w += ldw) {
-    top += load<4>(w) * all<4>(x[c]);
-    bottom += load<2>(w + 4) * all<2>(x[c]);
+    top[c % 2] = multiply_add<4>(load<4>(w), all<4>(x[c]), top[c % 2]);
+    bottom[c % 2] = multiply_add<2>(load<2>(w + 4), all<2>(x[c]), bottom[c % 2]);
   }
-  store<4>(x, top);
-  store<2>(x + 4, bottom);
+  store<4>(x, top[0] + top[1]);
+  store<2>(x + 4, bottom[0] + bottom[1]);
 }
 
-void multiply_upper(const double* w, int ldw, double* x) {
-  double y[6] = {};
-  for (int c = 0; c < 6; ++c) {
-    for (int r = c; r < 6; ++r) y[c] += w[r + c * ldw] * x[r];
+void add_columns(int rows, int columns, const double* a, int lda, double* c, int ldc) {
+  const int whole = rows / 4 * 4;
+  for (int column = 0; column < columns; ++column, a += lda, c += ldc) {
+    for (int r = 0; r < whole; r += 4) store<4>(c + r, load<4>(c + r) + load<4>(a + r));
+    if (whole < rows) store<2>(c + whole, load<2>(c + whole) + load<2>(a + whole));
   }
-  for (int c = 0; c < 6; c += 2) store<2>(x + c, Vector<2>{y[c], y[c + 1]});
+}
+
+// Two whole columns at a time, whose sums are taken in pairs.
+void multiply_upper(const double* w, int ldw, double* x) {
+  const Vector<4> top = load_halves(x);
+  const Vector<2> bottom = load<2>(x + 4);
+  for (int c = 0; c < 6; c += 2, w += 2L * ldw) {
+    const Vector<4> in_pairs = _mm256_hadd_pd(load<4>(w) * top, load<4>(w + ldw) * top);
+    const Vector<2> below = _mm_hadd_pd(load<2>(w + 4) * bottom, load<2>(w + ldw + 4) * bottom);
+    const Vector<2> above = _mm256_castpd256_pd128(in_pairs) + _mm256_extractf128_pd(in_pairs, 1);
+    store<2>(x + c, above + below);
+  }
 }
 
 }  // namespace cleave

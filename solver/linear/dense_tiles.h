@@ -18,8 +18,10 @@ struct DenseTiles {
 
   void (*subtract_product)(int rows, int depth, const double* a, int lda, const double* b, int ldb, double* c,
                            int ldc);
+  void (*write_negative_product)(int rows, int depth, const double* a, int lda, const double* b, int ldb,
+                                 double* c, int ldc);
   void (*multiply_by_transpose)(int rows, const double* w, int ldw, double* c, int ldc);
-  bool (*weighted_gram)(int rows, const double* jacobian, const double* d, double* h);
+  bool (*weighted_gram)(int bodies, int rows, const double* jacobian, const double* d, double* h);
 
   void (*subtract_panel_product)(int depth, const double* a, const double* b, double* c);
   void (*multiply_panel_by_transpose)(const double* w, int first_row, double* c);

@@ -11,7 +11,8 @@ namespace {
 constexpr DenseTiles tiles_of(const char* name, bool (*is_supported)()) {
   return {name,
           is_supported,
-          subtract_product_tiled,
+          subtract_product_tiled<Begin::at_what_is_there>,
+          subtract_product_tiled<Begin::at_zero>,
           multiply_by_transpose_tiled,
           weighted_gram_tiled,
           subtract_panel_product_tiled,

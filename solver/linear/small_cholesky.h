@@ -1,8 +1,4 @@
 // Inverse of the Cholesky factor of a block of N rows, the diagonal blocks of the factorisations.
-//
-// Every stored trajectory depends on how the sums below are rounded: products of a group (four in a pivot,
-// two elsewhere) are rounded apart, what is left is fused. The order is that of the first release and has no
-// other merit.
 #pragma once
 
 #include <cmath>
@@ -19,16 +15,10 @@ inline void unrolled(const Call& call) {
   (std::make_integer_sequence<int, N>());
 }
 
-// start - sum_k a_k b_k over `Count` products, those of every whole group of `Group` rounded apart.
-template <int Group, int Count>
+// start - sum_k a_k b_k over `Count` products.
+template <int Count>
 inline double subtract_products(double start, const double* a, const double* b) {
-  unrolled<Count>([&](auto k) {
-    if constexpr (k < Count / Group * Group) {
-      start -= a[k] * b[k];
-    } else {
-      start = std::fma(-a[k], b[k], start);
-    }
-  });
+  unrolled<Count>([&](auto k) { start = std::fma(-a[k], b[k], start); });
   return start;
 }
 
@@ -41,17 +31,16 @@ bool invert_cholesky(const double* a, int lda, double* w, int ldw) {
   double l[N][N], inverse[N][N];  // by rows, by columns
   bool is_positive = true;
   unrolled<N>([&](auto j) {
-    const double pivot = subtract_products<4, j>(a[j + lda * j], l[j], l[j]);
+    const double pivot = subtract_products<j>(a[j + lda * j], l[j], l[j]);
     is_positive = is_positive && pivot > 0 && std::isfinite(pivot);
     const double of_pivot = 1 / std::sqrt(pivot);
     unrolled<N - 1 - j>([&](auto below) {
       constexpr int i = j + 1 + below;
-      l[i][j] = subtract_products<2, j>(a[i + lda * j], l[i], l[j]) * of_pivot;
+      l[i][j] = subtract_products<j>(a[i + lda * j], l[i], l[j]) * of_pivot;
     });
     inverse[j][j] = of_pivot;
-    unrolled<j>([&](auto c) {
-      inverse[c][j] = subtract_products<2, j - c>(0.0, l[j] + c, inverse[c] + c) * of_pivot;
-    });
+    unrolled<j>(
+        [&](auto c) { inverse[c][j] = subtract_products<j - c>(0.0, l[j] + c, inverse[c] + c) * of_pivot; });
   });
   if (!is_positive) return false;
   unrolled<N>([&](auto j) {

@@ -66,6 +66,26 @@ inline void store(double* p, Vector<Lanes> v) {
   VectorOf<Lanes>::store(p, v);
 }
 
+// How a vector is read and written: whole, or the first of its lanes, where the others are zero and what is in
+// their places stays.
+template <int Lanes>
+struct WholeVector {
+  Vector<Lanes> read(const double* p) const { return load<Lanes>(p); }
+  void write(double* p, Vector<Lanes> v) const { store<Lanes>(p, v); }
+};
+
+#ifdef __AVX512F__
+class FirstLanes {
+ public:
+  explicit FirstLanes(int count) : mask_(static_cast<__mmask8>((1 << count) - 1)) {}
+  Vector<8> read(const double* p) const { return _mm512_maskz_loadu_pd(mask_, p); }
+  void write(double* p, Vector<8> v) const { _mm512_mask_storeu_pd(p, mask_, v); }
+
+ private:
+  __mmask8 mask_;
+};
+#endif
+
 template <int Lanes>
 inline Vector<Lanes> all(double value) {
   return VectorOf<Lanes>::all(value);

@@ -120,17 +120,16 @@ void IntervalBarrier::aim(SolveState& state, int first, int last, double product
 
 void IntervalBarrier::Side::follow(int first, int last, std::span<const double> dlambda,
                                    ChunkCourse& course) {
-#pragma omp simd
-  for (int r = first; r < last; ++r) {
-    now.ds[r] = is_there[r] * (sign * dlambda[r]) + gap[r];
-    now.dz[r] = (now.c[r] - z[r] * now.ds[r]) * inverse_s[r];
-  }
   double fastest[kLanes] = {}, sum[3][kLanes] = {};
   const auto visit = [&](int r, int lane) {
-    fastest[lane] = greater(fastest[lane], greater(-now.ds[r] * inverse_s[r], -now.dz[r] * inverse_z[r]));
+    const double ds = is_there[r] * (sign * dlambda[r]) + gap[r];
+    const double dz = (now.c[r] - z[r] * ds) * inverse_s[r];
+    now.ds[r] = ds;
+    now.dz[r] = dz;
+    fastest[lane] = greater(fastest[lane], greater(-ds * inverse_s[r], -dz * inverse_z[r]));
     sum[0][lane] += s[r] * z[r];
-    sum[1][lane] += s[r] * now.dz[r] + z[r] * now.ds[r];
-    sum[2][lane] += now.ds[r] * now.dz[r];
+    sum[1][lane] += s[r] * dz + z[r] * ds;
+    sum[2][lane] += ds * dz;
   };
   const int whole = first + (last - first) / kLanes * kLanes;
   for (int r = first; r < whole; r += kLanes) {

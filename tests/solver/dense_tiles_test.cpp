@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -84,17 +85,13 @@ void slow_product(int rows, int depth, const double* a, int lda, const double* b
   }
 }
 
-// The product that begins a sum is rounded on its own: that of k = 1, in column 3 of the last two rows k = 0.
 void slow_by_transpose(int rows, const double* w, double* c) {
   for (int r = 0; r < rows; ++r) {
     double in[6];
     for (int k = 0; k < 6; ++k) in[k] = c[r + k * rows];
-    const bool in_pair = r >= rows / 4 * 4;
-    c[r] = in[0] * w[0];
-    for (int j = 1; j < 6; ++j) {
-      const int first = in_pair && j == 3 ? 0 : 1, second = 1 - first;
-      double sum = std::fma(in[second], w[j + 6 * second], in[first] * w[j + 6 * first]);
-      for (int k = 2; k <= j; ++k) sum = std::fma(in[k], w[j + 6 * k], sum);
+    for (int j = 0; j < 6; ++j) {
+      double sum = in[0] * w[j];
+      for (int k = 1; k <= j; ++k) sum = std::fma(in[k], w[j + 6 * k], sum);
       c[r + j * rows] = sum;
     }
   }
@@ -158,6 +155,12 @@ TEST_P(DenseTilesTest, BlockProductsGiveTheBytesOfWrittenOutLoops) {
     GetParam()->subtract_product(rows, depth, a.data(), ld, b.data(), ld, found.data(), ld);
     slow_product(rows, depth, a.data(), ld, b.data(), ld, expected.data(), ld);
     EXPECT_TRUE(same_bytes(found, expected)) << rows << " rows";
+    // What is between the columns stays as it is.
+    found = random_values(random, 6 * ld), expected = found;
+    GetParam()->write_negative_product(rows, depth, a.data(), ld, b.data(), ld, found.data(), ld);
+    for (int j = 0; j < 6; ++j) std::fill_n(expected.begin() + j * ld, rows, 0.0);
+    slow_product(rows, depth, a.data(), ld, b.data(), ld, expected.data(), ld);
+    EXPECT_TRUE(same_bytes(found, expected)) << rows << " rows from zero";
   }
 }
 
@@ -180,7 +183,7 @@ TEST_P(DenseTilesTest, GramMatricesGiveTheBytesOfWrittenOutLoops) {
     const Values jacobian = random_values(random, 12 * rows);
     Values d = random_values(random, rows), found(144), expected(144);
     if (rows > 2) d[rows / 2] = 0;
-    ASSERT_TRUE(GetParam()->weighted_gram(rows, jacobian.data(), d.data(), found.data()));
+    ASSERT_TRUE(GetParam()->weighted_gram(2, rows, jacobian.data(), d.data(), found.data()));
     slow_gram(rows, jacobian.data(), d.data(), expected.data());
     for (int column = 0; column < 12; ++column) {
       for (int row = column < 6 ? 0 : 6; row < 12; ++row) {  // blocks on and below the diagonal
@@ -188,8 +191,16 @@ TEST_P(DenseTilesTest, GramMatricesGiveTheBytesOfWrittenOutLoops) {
             << rows << " rows, " << row << ", " << column;
       }
     }
+    ASSERT_TRUE(GetParam()->weighted_gram(1, rows, jacobian.data(), d.data(), found.data()));
+    for (int column = 0; column < 6; ++column) {
+      for (int row = 0; row < 6; ++row) {
+        EXPECT_EQ(found[row + 12 * column], expected[row + 12 * column])
+            << rows << " rows of one body, " << row << ", " << column;
+      }
+    }
     d.assign(rows, 0.0);
-    EXPECT_FALSE(GetParam()->weighted_gram(rows, jacobian.data(), d.data(), found.data()));
+    for (const int bodies : {1, 2})
+      EXPECT_FALSE(GetParam()->weighted_gram(bodies, rows, jacobian.data(), d.data(), found.data()));
   }
 }
 
