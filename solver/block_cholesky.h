@@ -1,10 +1,9 @@
 // Numeric Cholesky factorisation H = L L^T of a sparse matrix of 6x6 blocks, multifrontal on supernodes.
 //
-// Each supernode owns a dense panel (its columns, all its rows). It adds what its children left to it, factors
-// its columns and leaves its own update matrix to its parent, U = -L21 L21^T and what its children left to the
-// rows below (Duff and Reid 1983). The
-// inverse of every 6x6 diagonal block of L is stored in the place of the block. Right-hand sides are (n, 6)
-// by node.
+// Each supernode owns a dense panel (its columns, all its rows). It adds what its children left to it,
+// factors its columns and leaves its own update matrix to its parent, U = -L21 L21^T and what its children
+// left to the rows below (Duff and Reid 1983). The inverse of every 6x6 diagonal block of L is stored in the
+// place of the block. Right-hand sides are (n, 6) by node.
 #pragma once
 
 #include <span>

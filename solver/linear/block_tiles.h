@@ -11,8 +11,8 @@ namespace {
 
 enum class Begin { at_what_is_there, at_zero };
 
-// One register tile: C (Parts * Lanes, 6) -= A B^T, from what is there or from zero; last: how the last of its
-// Parts is read and written.
+// One register tile: C (Parts * Lanes, 6) -= A B^T, from what is there or from zero; last: how the last of
+// its Parts is read and written.
 template <int Lanes, int Parts, Begin kBegin, class Last = WholeVector<Lanes>>
 inline void product_tile(int depth, const double* a, int lda, const double* b, int ldb, double* c, int ldc,
                          const Last& last = {}) {
@@ -108,7 +108,7 @@ void multiply_by_transpose_tiled(int rows, const double* w, int ldw, double* c, 
 #endif
 }
 
-// A body's blocks span six rows and columns, which are no whole number of vectors: some go further up or down.
+// A body's blocks span six rows and columns, which are no whole number of vectors: some go further.
 bool weighted_gram_tiled(int bodies, int rows, const double* jacobian, const double* d, double* h) {
   bool any = false;
   for (int r = 0; r < rows; ++r) any |= d[r] != 0;

@@ -27,8 +27,8 @@ inline void multiply_by_transpose(int rows, const double* w, int ldw, double* c,
   dense_tiles().multiply_by_transpose(rows, w, ldw, c, ldc);
 }
 
-// H (12, 12, column-major, all blocks on and below the diagonal blocks; of one body the first block alone) =
-// sum_r d_r j_r^T j_r over `rows` Jacobian rows of 12, skipping rows with d_r = 0. Returns false when all were
+// H (12, 12, column-major, all blocks on and below the diagonal blocks; of one body the first block) = sum_r
+// d_r j_r^T j_r over `rows` Jacobian rows of 12, skipping rows with d_r = 0. Returns false when all were
 // skipped (H is then not written).
 inline bool weighted_gram(int bodies, int rows, const double* jacobian, const double* d, double* h) {
   return dense_tiles().weighted_gram(bodies, rows, jacobian, d, h);

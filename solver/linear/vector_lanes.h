@@ -66,8 +66,8 @@ inline void store(double* p, Vector<Lanes> v) {
   VectorOf<Lanes>::store(p, v);
 }
 
-// How a vector is read and written: whole, or the first of its lanes, where the others are zero and what is in
-// their places stays.
+// How a vector is read and written: whole, or the first of its lanes, where the others are zero and what is
+// in their places stays.
 template <int Lanes>
 struct WholeVector {
   Vector<Lanes> read(const double* p) const { return load<Lanes>(p); }
