@@ -90,6 +90,8 @@ class CompareBuildsTest(StandInCase):
         with unittest.mock.patch.dict(os.environ, CLEAVE_EARLIER="/nowhere"):
             self.check_refused(((), "CLEAVE_EARLIER is '/nowhere', which cannot be run"))
         self.assertIn("--version does not say a commit", self.compare(code=1, fails="version").stderr.splitlines()[-1])
+        self.assertRegex(self.compare("--commit", "HEAD", code=1).stderr.splitlines()[-1],
+                         r"CLEAVE_EARLIER is a build of commit a123456789\w*, and --commit is 'HEAD'$")
 
 
 class EarlierBuildTest(unittest.TestCase):
