@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <limits>
 
@@ -189,11 +190,19 @@ int SolveState::find_violations(double tolerance, Violated when) {
   run_over_rows([&](int first, int last, int) {
     for (int r = first; r < last; ++r) row_is_violated[r] = is_violated(r);
   });
-  violated.clear();
-  for (int r = 0; r < static_cast<int>(impulse.size()); ++r) {
-    if (row_is_violated[r]) violated.push_back(r);
-  }
+  list_violated();
   return static_cast<int>(violated.size());
+}
+
+// Few are: memchr goes over the others, many at a time.
+void SolveState::list_violated() {
+  violated.clear();
+  const char *begin = row_is_violated.data(), *end = begin + row_is_violated.size();
+  for (const char* next = begin; next != end; ++next) {
+    next = static_cast<const char*>(std::memchr(next, 1, end - next));
+    if (next == nullptr) return;
+    violated.push_back(static_cast<int>(next - begin));
+  }
 }
 
 bool SolveState::settle(double tolerance, const Settling& settling) {

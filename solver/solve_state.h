@@ -140,6 +140,7 @@ struct SolveState {
   template <class Taken>
   void put_law_into(std::span<double> slacks, const Taken& taken) const;
   double residual_of(std::span<const double> slacks);
+  void list_violated();  // from row_is_violated
   // shift <- mu |w_t| of the present velocities, and into the slacks.
   void update_shift();
 

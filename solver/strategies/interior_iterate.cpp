@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 namespace cleave {
 namespace {
@@ -30,18 +31,28 @@ void InteriorIterate::choose_impulses(SolveState& state) {
 // have a large d and heavy ones a small one. The same speed everywhere would let the heavy rule the target.
 void InteriorIterate::start_rows(SolveState& state, double inside) {
   const int m = state.step->row_count();
-  double energy = 0, fastest = 0;
-  for (int r = 0; r < m; ++r) {
-    energy += state.slack[r] * state.slack[r] / state.step->diagonal()[r];
-    fastest = std::max(fastest, std::abs(state.slack[r]));
-  }
-  energy *= inside * constants_.start_energy / std::max(m, 1);
+  const std::span<const double> diagonal = state.step->diagonal();
+  state.chunk_values.resize(state.chunk_count());
+  chunk_energy_.resize(state.chunk_count());
+  state.run_over_rows([&](int first, int last, int chunk) {
+    double energy = 0, fastest = 0;
+    for (int r = first; r < last; ++r) {
+      energy += state.slack[r] * state.slack[r] / diagonal[r];
+      fastest = std::max(fastest, std::abs(state.slack[r]));
+    }
+    chunk_energy_[chunk] = energy;
+    state.chunk_values[chunk] = fastest;
+  });
+  const double fastest = SolveState::greatest_of(state.chunk_values);
+  const double energy = std::accumulate(chunk_energy_.begin(), chunk_energy_.end(), 0.0) * inside *
+                        constants_.start_energy / std::max(m, 1);
   row_speed_.resize(m);
-  for (int r = 0; r < m; ++r) {
-    const double speed =
-        std::min(std::sqrt(energy * state.step->diagonal()[r]), constants_.most_speed * fastest);
-    row_speed_[r] = std::max(constants_.least_speed_m_per_s, speed);
-  }
+  state.run_over_rows([&](int first, int last, int) {
+    for (int r = first; r < last; ++r) {
+      const double speed = std::min(std::sqrt(energy * diagonal[r]), constants_.most_speed * fastest);
+      row_speed_[r] = std::max(constants_.least_speed_m_per_s, speed);
+    }
+  });
   barrier_.start(state, row_speed_);
 }
 

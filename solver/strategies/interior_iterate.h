@@ -94,7 +94,7 @@ class InteriorIterate {
   double error_ = 0;                    // of the present iterate
   bool is_to_be_kept_ = false;          // which is the one to come back to
   std::vector<double> kept_impulse_, kept_dlambda_;
-  std::vector<double> row_speed_, row_error_;
+  std::vector<double> row_speed_, row_error_, chunk_energy_;
   std::vector<double> change_;        // (n, 6) M^-1 J^T dlambda
   std::vector<double> wanted_shift_;  // (cones)
 };

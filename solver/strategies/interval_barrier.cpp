@@ -29,11 +29,19 @@ BarrierCourse join_courses(std::span<const ChunkCourse> chunks) {
   return course;
 }
 
-void IntervalBarrier::Side::start(std::size_t rows) {
-  s.assign(rows, 1.0);
-  for (std::vector<double>* v : {&is_there, &bound, &z, &inverse_s, &inverse_z, &gap, &now.ds, &now.dz,
-                                 &now.c, &before.ds, &before.dz, &before.c, &kept_s, &kept_z})
-    v->assign(rows, 0.0);
+std::array<std::vector<double>*, 14> IntervalBarrier::Side::zeros_at_start() {
+  return {&is_there, &bound, &z,         &inverse_s, &inverse_z, &gap,    &now.ds,
+          &now.dz,   &now.c, &before.ds, &before.dz, &before.c,  &kept_s, &kept_z};
+}
+
+void IntervalBarrier::Side::resize(std::size_t rows) {
+  s.resize(rows);
+  for (std::vector<double>* v : zeros_at_start()) v->resize(rows);
+}
+
+void IntervalBarrier::Side::start(int first, int last) {
+  std::fill(s.begin() + first, s.begin() + last, 1.0);
+  for (std::vector<double>* v : zeros_at_start()) std::fill(v->begin() + first, v->begin() + last, 0.0);
 }
 
 void IntervalBarrier::Side::add(int r, double value, double impulse, double multiplier) {
@@ -43,7 +51,7 @@ void IntervalBarrier::Side::add(int r, double value, double impulse, double mult
   z[r] = multiplier;
 }
 
-void IntervalBarrier::add_bounds(SolveState& state, int r, double speed) {
+int IntervalBarrier::add_bounds(SolveState& state, int r, double speed) {
   const StepProblem& problem = state.step->problem();
   const double d = state.step->diagonal()[r], w = state.slack[r];
   const double lower = problem.lower[r], upper = problem.upper[r], width = upper - lower;
@@ -53,30 +61,38 @@ void IntervalBarrier::add_bounds(SolveState& state, int r, double speed) {
     use_[r] = RowUse::fixed;
     moves_[r] = 0;
     state.impulse[r] = 0.5 * (lower + upper);
-    return;
+    return 0;
   }
   // The impulse itself moves inside, so that slacks start feasible even where the bounds are close together.
   const double margin = std::min(speed / d, constants_.inside_share * width);
   if (std::isfinite(lower)) state.impulse[r] = std::max(state.impulse[r], lower + margin);
   if (std::isfinite(upper)) state.impulse[r] = std::min(state.impulse[r], upper - margin);
+  int bounds = 0;
   for (Side& side : sides_) {
     const double bound = side.sign > 0 ? lower : upper;
     if (!std::isfinite(bound)) continue;
     side.add(r, bound, state.impulse[r], std::max(side.sign * w, 0.0) + speed);
-    ++bounds_;
+    ++bounds;
   }
+  return bounds;
 }
 
 void IntervalBarrier::start(SolveState& state, std::span<const double> speed) {
-  bounds_ = 0;
-  for (Side& side : sides_) side.start(speed.size());
+  for (Side& side : sides_) side.resize(speed.size());
+  moves_.resize(speed.size());
   use_.assign(speed.size(), RowUse::bounded);
-  moves_.assign(speed.size(), 1.0);
   for (const FrictionCone& cone : state.step->set().cones())
     std::fill_n(use_.begin() + cone.first_row, cone.row_count, RowUse::of_cone);
-  for (std::size_t r = 0; r < speed.size(); ++r) {
-    if (!is_of_cone(r)) add_bounds(state, static_cast<int>(r), speed[r]);
-  }
+  chunk_bounds_.resize(state.chunk_count());
+  state.run_over_rows([&](int first, int last, int chunk) {
+    for (Side& side : sides_) side.start(first, last);
+    std::fill(moves_.begin() + first, moves_.begin() + last, 1.0);
+    int bounds = 0;
+    for (int r = first; r < last; ++r)
+      if (!is_of_cone(r)) bounds += add_bounds(state, r, speed[r]);
+    chunk_bounds_[chunk] = bounds;
+  });
+  bounds_ = std::accumulate(chunk_bounds_.begin(), chunk_bounds_.end(), std::size_t{0});
 }
 
 void IntervalBarrier::Side::weigh(int first, int last, std::span<const double> impulse,

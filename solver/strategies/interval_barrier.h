@@ -94,7 +94,8 @@ class IntervalBarrier {
   // The lower or the upper bounds of all rows.
   struct Side {
     explicit Side(double sign_of_bound) : sign(sign_of_bound) {}
-    void start(std::size_t rows);  // without bounds
+    void resize(std::size_t rows);
+    void start(int first, int last);  // without bounds
     void add(int row, double value, double impulse, double multiplier);
     void weigh(int first, int last, std::span<const double> impulse, std::span<double> weight);
     void aim(int first, int last, double product, double share);
@@ -103,6 +104,8 @@ class IntervalBarrier {
     void correct(int first, int last, double trial, double low, double high);
     double error(int first, int last, std::span<const double> d, std::span<double> row_error) const;
     void keep(int first, int last);
+
+    std::array<std::vector<double>*, 14> zeros_at_start();
 
     double sign;                                    // sigma
     std::vector<double> is_there;                   // 1, or 0 where a row has no such bound
@@ -113,7 +116,7 @@ class IntervalBarrier {
   };
   enum class RowUse : std::uint8_t { bounded, fixed, of_cone };
 
-  void add_bounds(SolveState& state, int row, double speed);
+  int add_bounds(SolveState& state, int row, double speed);  // returns how many are finite
   // None where no row has a bound.
   std::span<Side> sides() { return std::span(sides_).first(bounds_ > 0 ? 2 : 0); }
   std::span<const Side> sides() const { return std::span(sides_).first(bounds_ > 0 ? 2 : 0); }
@@ -121,6 +124,7 @@ class IntervalBarrier {
   InteriorConstants constants_;
   std::array<Side, 2> sides_ = {Side(1), Side(-1)};  // lower, upper
   std::size_t bounds_ = 0;                           // finite ones
+  std::vector<int> chunk_bounds_;                    // the same of every chunk of rows
   std::vector<RowUse> use_;                          // (m)
   std::vector<double> moves_;                        // (m) 0 where a row is fixed, else 1
 };
