@@ -12,7 +12,7 @@ namespace cleave {
 namespace {
 
 // target += the 6x6 block, or its transpose. Two numbers at a time: the second body's have only just been
-// stored, four at a time, and a load that is not within one of those stores would wait for memory.
+// stored, four or eight at a time, and a load that is not within one of those stores would wait for memory.
 void add_block(double* target, int ld, const double* block, int block_ld, bool transposed) {
   for (int c = 0; c < 6; ++c) {
     for (int r = 0; r < 6; r += 2) {

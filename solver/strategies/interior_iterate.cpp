@@ -35,13 +35,11 @@ void InteriorIterate::start_rows(SolveState& state, double inside) {
   state.chunk_values.resize(state.chunk_count());
   chunk_energy_.resize(state.chunk_count());
   state.run_over_rows([&](int first, int last, int chunk) {
-    double energy = 0, fastest = 0;
-    for (int r = first; r < last; ++r) {
-      energy += state.slack[r] * state.slack[r] / diagonal[r];
-      fastest = std::max(fastest, std::abs(state.slack[r]));
-    }
+    double energy = 0;
+    for (int r = first; r < last; ++r) energy += state.slack[r] * state.slack[r] / diagonal[r];
     chunk_energy_[chunk] = energy;
-    state.chunk_values[chunk] = fastest;
+    state.chunk_values[chunk] =
+        SolveState::greatest_of(first, last, [&](int r) { return std::abs(state.slack[r]); });
   });
   const double fastest = SolveState::greatest_of(state.chunk_values);
   const double energy = std::accumulate(chunk_energy_.begin(), chunk_energy_.end(), 0.0) * inside *

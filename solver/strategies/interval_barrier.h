@@ -104,7 +104,6 @@ class IntervalBarrier {
     void correct(int first, int last, double trial, double low, double high);
     double error(int first, int last, std::span<const double> d, std::span<double> row_error) const;
     void keep(int first, int last);
-
     std::array<std::vector<double>*, 14> zeros_at_start();
 
     double sign;                                    // sigma
@@ -116,7 +115,7 @@ class IntervalBarrier {
   };
   enum class RowUse : std::uint8_t { bounded, fixed, of_cone };
 
-  int add_bounds(SolveState& state, int row, double speed);  // returns how many are finite
+  int add_bounds(SolveState& state, int row, double speed);  // returns how many it has added
   // None where no row has a bound.
   std::span<Side> sides() { return std::span(sides_).first(bounds_ > 0 ? 2 : 0); }
   std::span<const Side> sides() const { return std::span(sides_).first(bounds_ > 0 ? 2 : 0); }

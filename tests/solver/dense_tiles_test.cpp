@@ -191,6 +191,7 @@ TEST_P(DenseTilesTest, GramMatricesGiveTheBytesOfWrittenOutLoops) {
             << rows << " rows, " << row << ", " << column;
       }
     }
+    found = random_values(random, 144);
     ASSERT_TRUE(GetParam()->weighted_gram(1, rows, jacobian.data(), d.data(), found.data()));
     for (int column = 0; column < 6; ++column) {
       for (int row = 0; row < 6; ++row) {
